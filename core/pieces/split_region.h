@@ -1,0 +1,89 @@
+// A region -> its segments, by the bijection between medial structures and
+// segments (sections 2.2 and 3 of the paper).
+//
+// What the paper leaves open is decided here:
+//  - The region's boundary, onto which a seed is extended (section 3: "when
+//    the vertex v lies in a boundary, we also extend it to a loop"), is made
+//    of the edges between the region and the rest of the mesh. Holes of the
+//    mesh are not boundaries of a segment. The loop is the connected set of
+//    boundary edges that v lies on; loops that touch are one.
+//  - A mean distance (Eq. 15) at or below zero means that there is nothing to
+//    split.
+//  - Faces of equal key leave the heap by face id, then front id.
+//  - A front that is starved (it holds no face) is dropped, and so is its
+//    medial structure.
+//  - Faces that no front reaches (another connected piece of the region) go,
+//    a piece as a whole, to the front that is nearest by Eq. 11.
+//  - A segment in several pieces keeps the largest; the others go to the
+//    segment with which they share the longest boundary, where there is one.
+//  - The relaxation ends after kMaxIterations at the latest.
+#ifndef MARROW_CORE_PIECES_SPLIT_REGION_H_
+#define MARROW_CORE_PIECES_SPLIT_REGION_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/spectrum/eigen_pairs.h"
+
+namespace marrow {
+
+// The paper's parameters; ranges in core/pipeline/options.h.
+struct SplitOptions {
+  double kappa = 1.5;       // threshold of the initialisation, times Eq. 15
+  double delta = 0.1;       // truncation of the diffusion map
+  double epsilon = 0.01;    // tolerance around the least ADD, times Eq. 14
+  double tolerance = 0.01;  // share of vertices that may still move
+};
+
+// Why a region was not split.
+enum class StopReason {
+  kNone,              // it was split
+  kOneSegment,        // no vertex is far enough from its medial structure
+  kTooSmall,          // fewer than kMinRegionFaces faces, or no area
+  kTooFewEigenPairs,  // its time scale wants pairs that are not there
+  kDepth,             // not tried: the last level was reached
+};
+
+inline constexpr uint32_t kMinRegionFaces = 16;
+inline constexpr uint32_t kMaxIterations = 50;
+inline constexpr uint32_t kMaxMedialStructures = 40;
+
+// What all regions of one mesh share. The referents must outlive the use.
+struct SplitContext {
+  const TriangleMesh& mesh;
+  const Adjacency& adjacency;
+  const EigenPairs& pairs;
+  const std::vector<double>& face_areas;  // in units of the mesh's whole area
+};
+
+struct Piece {
+  std::vector<uint32_t> faces;             // ascending, not empty
+  std::vector<uint32_t> medial_structure;  // vertices, ascending
+};
+
+struct RegionSplit {
+  // At least two, partitioning the region; empty where it was not split.
+  std::vector<Piece> pieces;
+  uint32_t iterations = 0;
+  StopReason stop_reason = StopReason::kNone;
+};
+
+// Splits the region made of `faces` (ascending, not empty). Deterministic.
+// Errors: CANCELLED.
+absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
+                                        const std::vector<uint32_t>& faces,
+                                        const SplitOptions& options,
+                                        const CancelToken& cancel);
+
+// The medial structure of a region at its own time scale (Eq. 8 and 10).
+std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
+                                        const std::vector<uint32_t>& faces,
+                                        const SplitOptions& options);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_PIECES_SPLIT_REGION_H_

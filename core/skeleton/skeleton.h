@@ -1,0 +1,39 @@
+// Segments of one level -> a rooted tree of joints and bones (the paper's
+// Fig. 10): centres of mass joined through the centres of shared boundaries.
+#ifndef MARROW_CORE_SKELETON_SKELETON_H_
+#define MARROW_CORE_SKELETON_SKELETON_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/hierarchy/segment_tree.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+struct Joint {
+  uint32_t parent = kNoIndex;  // index among the joints, less than its own
+  bool articulation = false;   // centre of a boundary, else of a segment
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // payload's units
+  // The segment whose centre this is, or the parent's and the child's.
+  std::vector<uint32_t> segments;
+};
+
+// joints[0] is the root; every joint's parent stands before it. Every segment
+// of the level has exactly one joint that is its centre.
+struct Skeleton {
+  std::vector<Joint> joints;
+};
+
+// The root is the segment that holds the root node's medial structure, the
+// most central points of the mesh. Where segments meet in cycles, the longest
+// boundaries are kept (a maximum spanning tree); segments of separate
+// components hang on the nearest centre, without an articulation.
+Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
+                       const SegmentTree& tree, uint32_t level);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_SKELETON_SKELETON_H_

@@ -1,0 +1,60 @@
+// The lowest eigen-pairs of a mesh's Laplace-Beltrami operator, and whoever can
+// give them.
+#ifndef MARROW_CORE_SPECTRUM_EIGEN_PAIRS_H_
+#define MARROW_CORE_SPECTRUM_EIGEN_PAIRS_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
+#include "core/mesh/canonical_mesh.h"
+
+namespace marrow {
+
+// L phi = lambda M phi on the canonical mesh, scaled to area 1 (so lambda and
+// the time scale t are dimensionless). Immutable once built.
+struct EigenPairs {
+  // Ascending; entry 0 is the constant pair's, exactly 0.
+  Eigen::VectorXd eigenvalues;
+  // n x pairs, a column an eigenvector, M-orthonormal. Row-major: the rows are
+  // what the diffusion map reads.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
+      eigenvectors;
+  // Area of the canonical mesh in the payload's units: an eigenvalue in those
+  // units is lambda / area, an eigenvector phi / sqrt(area).
+  double area = 0;
+  // Whether these are all the pairs of the mesh, so that no truncation of a
+  // diffusion map can want more.
+  bool complete = false;
+
+  // Number of pairs, the constant one counted.
+  uint32_t NumPairs() const {
+    return static_cast<uint32_t>(eigenvalues.size());
+  }
+  uint64_t Bytes() const {
+    return sizeof(double) * (eigenvalues.size() + eigenvectors.size());
+  }
+};
+
+// Called with a share of the work, 0 to 1, never falling, on the thread that
+// computes.
+using ProgressCallback = std::function<void(double)>;
+
+class EigenPairSource {
+ public:
+  virtual ~EigenPairSource() = default;
+
+  // At least min(count + 1, mesh.vertices) pairs, the constant one included.
+  // REQUIRES: 2 <= count <= 1000. Thread safe. Errors: CANCELLED once `cancel`
+  // is; INTERNAL with reason SOLVER_NOT_CONVERGED.
+  virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress) = 0;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_SPECTRUM_EIGEN_PAIRS_H_
