@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace marrow {
+namespace marrow::client {
 
 using Point3 = std::array<double, 3>;
 
@@ -64,6 +64,6 @@ struct Segmentation {
   }
 };
 
-}  // namespace marrow
+}  // namespace marrow::client
 
 #endif  // MARROW_CLIENT_SEGMENTATION_H_
