@@ -23,17 +23,17 @@ namespace marrow {
 struct MeshReport {
   uint64_t decoded_points = 0;
   uint64_t decoded_faces = 0;
-  uint64_t vertices = 0;          // after welding, used by a kept face
-  uint64_t faces = 0;             // kept: neither degenerate nor duplicate
-  uint64_t welded_points = 0;     // points that fell together with another
-  uint64_t unused_points = 0;     // points that no face uses
-  uint64_t degenerate_faces = 0;  // two corners at one position; dropped
-  uint64_t duplicate_faces = 0;   // same three vertices as another; dropped
-  uint64_t zero_area_faces = 0;   // kept, three corners on a line
-  uint64_t components = 0;        // connected through shared vertices
-  uint64_t boundary_edges = 0;    // in exactly one kept face
-  uint64_t boundary_loops = 0;    // connected components of boundary edges
-  uint64_t nonmanifold_edges = 0;  // in three or more kept faces
+  uint64_t vertices = 0;              // after welding, used by a kept face
+  uint64_t faces = 0;                 // kept: neither degenerate nor duplicate
+  uint64_t welded_points = 0;         // points that fell together with another
+  uint64_t unused_points = 0;         // points that no face uses
+  uint64_t degenerate_faces = 0;      // two corners at one position; dropped
+  uint64_t duplicate_faces = 0;       // same three vertices as another; dropped
+  uint64_t zero_area_faces = 0;       // kept, three corners on a line
+  uint64_t components = 0;            // connected through shared vertices
+  uint64_t boundary_edges = 0;        // in exactly one kept face
+  uint64_t boundary_loops = 0;        // connected components of boundary edges
+  uint64_t nonmanifold_edges = 0;     // in three or more kept faces
   uint64_t nonmanifold_vertices = 0;  // whose faces are not one fan
   // Vertices - edges + faces.
   int64_t euler_characteristic = 0;
