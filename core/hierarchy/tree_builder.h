@@ -1,0 +1,48 @@
+// The paper's recursion, a level at a time.
+#ifndef MARROW_CORE_HIERARCHY_TREE_BUILDER_H_
+#define MARROW_CORE_HIERARCHY_TREE_BUILDER_H_
+
+#include <cstdint>
+#include <functional>
+
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
+#include "core/hierarchy/segment_tree.h"
+#include "core/pieces/split_region.h"
+
+namespace marrow {
+
+// Grows a tree from its root by splitting all leaves of the deepest level.
+// Not thread safe. What the context refers to must outlive it.
+class TreeBuilder {
+ public:
+  // `mesh_area` is in units of the positions.
+  TreeBuilder(const SplitContext& context, const SplitOptions& options,
+              double mesh_area);
+
+  // Tries to split every node of the deepest level; whether any was. Calls
+  // `progress` with the share of their area that has been tried.
+  // Errors: CANCELLED; the tree is then not to be used.
+  absl::StatusOr<bool> Deepen(const CancelToken& cancel,
+                              const std::function<void(double)>& progress);
+
+  // Marks the leaves of the deepest level as stopped by the depth.
+  void StopAtDepth();
+
+  uint32_t depth() const { return depth_; }
+  const SegmentTree& tree() const { return tree_; }
+
+ private:
+  void AddChildren(uint32_t parent, RegionSplit split);
+  SegmentNode MakeNode(uint32_t parent, Piece piece) const;
+
+  SplitContext context_;
+  SplitOptions options_;
+  double mesh_area_;
+  uint32_t depth_ = 0;
+  SegmentTree tree_;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_HIERARCHY_TREE_BUILDER_H_

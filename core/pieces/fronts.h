@@ -1,0 +1,30 @@
+// Medial structures -> segments: competing fronts (Eq. 9 and 11).
+#ifndef MARROW_CORE_PIECES_FRONTS_H_
+#define MARROW_CORE_PIECES_FRONTS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/cancel_token.h"
+#include "core/diffusion/diffusion_map.h"
+#include "core/pieces/region.h"
+
+namespace marrow {
+
+// A medial structure: local vertices, ascending.
+using Structure = std::vector<uint32_t>;
+
+// Local face -> the structure (front) that claims it: faces leave a heap in the
+// order of (Eq. 11, local face, front), which is total, so the result does not
+// depend on the heap. Faces that no front reaches go, a connected piece of the
+// region as a whole, to the front whose greatest distance over the piece is
+// least. Returns early, with anything, once `cancel` is.
+// REQUIRES: at least one structure, none empty.
+std::vector<uint32_t> CompeteFronts(const Region& region,
+                                    const DiffusionMap& Phi,
+                                    const std::vector<Structure>& structures,
+                                    const CancelToken& cancel);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_PIECES_FRONTS_H_

@@ -1,0 +1,44 @@
+// Medial structures of segments (Eq. 8), and the distance to one.
+#ifndef MARROW_CORE_PIECES_MEDIAL_STRUCTURE_H_
+#define MARROW_CORE_PIECES_MEDIAL_STRUCTURE_H_
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/diffusion/diffusion_map.h"
+#include "core/pieces/region.h"
+
+namespace marrow {
+
+// The local vertices of the segment made of the local faces `members` whose
+// ADD is within epsilon times the mean ADD of the least; ascending, not empty.
+// A segment without area has all its vertices.
+std::vector<uint32_t> ComputeMedialStructure(
+    const Region& region, const DiffusionMap& Phi,
+    std::span<const uint32_t> members, double epsilon);
+
+// The squared diffusion distance from a vertex to the nearest point of a medial
+// structure. Small structures are compared point by point, large ones through a
+// k-d tree; both give the exact least distance. Phi must outlive it.
+class StructureDistance {
+ public:
+  StructureDistance(const DiffusionMap& Phi,
+                    const std::vector<uint32_t>& structure);
+  ~StructureDistance();
+  StructureDistance(StructureDistance&&) noexcept;
+
+  double operator()(uint32_t vertex) const;
+
+ private:
+  struct Index;
+
+  const DiffusionMap* Phi_;
+  DiffusionMap points_;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_PIECES_MEDIAL_STRUCTURE_H_

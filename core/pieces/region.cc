@@ -1,0 +1,110 @@
+#include "core/pieces/region.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+
+namespace marrow {
+namespace {
+
+std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
+                                 const std::vector<uint32_t>& faces) {
+  std::vector<uint32_t> vertices;
+  vertices.reserve(3 * faces.size());
+  for (uint32_t f : faces)
+    vertices.insert(vertices.end(), mesh.faces[f].begin(),
+                    mesh.faces[f].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()),
+                 vertices.end());
+  return vertices;
+}
+
+std::vector<Triangle> LocalTriangles(const TriangleMesh& mesh,
+                                     const std::vector<uint32_t>& faces,
+                                     const std::vector<uint32_t>& vertices) {
+  std::vector<Triangle> triangles(faces.size());
+  for (size_t f = 0; f < faces.size(); ++f)
+    for (int i = 0; i < 3; ++i)
+      triangles[f][i] = static_cast<uint32_t>(
+          std::lower_bound(vertices.begin(), vertices.end(),
+                           mesh.faces[faces[f]][i]) -
+          vertices.begin());
+  return triangles;
+}
+
+Adjacency LocalAdjacency(uint32_t num_vertices,
+                         const std::vector<Triangle>& triangles) {
+  TriangleMesh topology;
+  topology.positions.resize(num_vertices, 3);
+  topology.faces = triangles;
+  return Adjacency(topology);
+}
+
+}  // namespace
+
+Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
+               const std::vector<double>& face_areas,
+               const std::vector<uint32_t>& faces)
+    : faces_(faces),
+      vertices_(VerticesOf(mesh, faces)),
+      triangles_(LocalTriangles(mesh, faces, vertices_)),
+      local_(LocalAdjacency(NumVertices(), triangles_)),
+      loop_(NumVertices(), kNoIndex) {
+  areas_.reserve(faces.size());
+  for (uint32_t f : faces) areas_.push_back(face_areas[f]);
+  area_ = std::accumulate(areas_.begin(), areas_.end(), 0.0);
+
+  DisjointSets loops(NumVertices());
+  for (uint32_t f = 0; f < NumFaces(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t here = local_.FaceEdges(f)[i];
+      const uint32_t there = adjacency.FaceEdges(faces_[f])[i];
+      if (adjacency.EdgeFaces(there).size() == local_.EdgeFaces(here).size())
+        continue;
+      const auto [a, b] = local_.EdgeVertices(here);
+      loops.Union(a, b);
+      loop_[a] = a;
+      loop_[b] = b;
+    }
+  }
+  for (uint32_t& loop : loop_)
+    if (loop != kNoIndex) loop = loops.Find(loop);
+}
+
+std::vector<uint32_t> Region::BoundaryLoop(uint32_t v) const {
+  if (loop_[v] == kNoIndex) return {v};
+  std::vector<uint32_t> members;
+  for (uint32_t u = 0; u < NumVertices(); ++u)
+    if (loop_[u] == loop_[v]) members.push_back(u);
+  return members;
+}
+
+std::vector<uint32_t> Region::AllFaces() const {
+  std::vector<uint32_t> all(NumFaces());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
+                                      const std::vector<uint32_t>& labels) {
+  DisjointSets sets(adjacency.NumFaces());
+  std::vector<std::pair<uint32_t, uint32_t>> around;  // label, face
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    around.clear();
+    for (uint32_t f : adjacency.EdgeFaces(e)) around.push_back({labels[f], f});
+    std::sort(around.begin(), around.end());
+    for (size_t i = 1; i < around.size(); ++i)
+      if (around[i].first == around[i - 1].first)
+        sets.Union(around[i].second, around[i - 1].second);
+  }
+  std::vector<uint32_t> piece(adjacency.NumFaces());
+  uint32_t count = 0;
+  for (uint32_t f = 0; f < piece.size(); ++f)
+    piece[f] = sets.Find(f) == f ? count++ : piece[sets.Find(f)];
+  return piece;
+}
+
+}  // namespace marrow

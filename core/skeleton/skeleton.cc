@@ -1,0 +1,208 @@
+#include "core/skeleton/skeleton.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+
+namespace marrow {
+namespace {
+
+// Where two segments meet: their longest connected run of shared edges.
+struct Boundary {
+  uint32_t a, b;  // places in the level's list of segments, a < b
+  double length = 0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+using EdgeList = std::vector<uint32_t>;
+
+// Edges between each pair of segments, by places.
+std::map<std::pair<uint32_t, uint32_t>, EdgeList> SharedEdges(
+    const Adjacency& adjacency, const std::vector<uint32_t>& place_of_face) {
+  std::map<std::pair<uint32_t, uint32_t>, EdgeList> shared;
+  std::vector<uint32_t> around;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    around.clear();
+    for (uint32_t f : adjacency.EdgeFaces(e))
+      around.push_back(place_of_face[f]);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (size_t i = 1; i < around.size(); ++i)
+      shared[{around[i - 1], around[i]}].push_back(e);
+  }
+  return shared;
+}
+
+// The longest of the connected runs that the edges form.
+Boundary LongestRun(const TriangleMesh& mesh, const Adjacency& adjacency,
+                    std::pair<uint32_t, uint32_t> places,
+                    const EdgeList& edges) {
+  std::map<uint32_t, uint32_t> local;
+  for (uint32_t e : edges)
+    for (uint32_t v : adjacency.EdgeVertices(e)) local.emplace(v, 0);
+  uint32_t next = 0;
+  for (auto& [vertex, id] : local) id = next++;
+  DisjointSets runs(next);
+  for (uint32_t e : edges) {
+    const auto [u, v] = adjacency.EdgeVertices(e);
+    runs.Union(local[u], local[v]);
+  }
+  std::vector<Boundary> candidates(next, {places.first, places.second});
+  for (uint32_t e : edges) {
+    const auto [u, v] = adjacency.EdgeVertices(e);
+    Boundary& run = candidates[runs.Find(local[u])];
+    const double length = (mesh.Position(u) - mesh.Position(v)).norm();
+    run.length += length;
+    run.centre += 0.5 * length * (mesh.Position(u) + mesh.Position(v));
+  }
+  Boundary longest = *std::max_element(
+      candidates.begin(), candidates.end(),
+      [](const Boundary& x, const Boundary& y) { return x.length < y.length; });
+  longest.centre /= longest.length;
+  return longest;
+}
+
+std::vector<Boundary> FindBoundaries(const TriangleMesh& mesh,
+                                     const Adjacency& adjacency,
+                                     const std::vector<uint32_t>& place) {
+  std::vector<Boundary> boundaries;
+  for (const auto& [places, edges] : SharedEdges(adjacency, place)) {
+    Boundary run = LongestRun(mesh, adjacency, places, edges);
+    if (run.length > 0) boundaries.push_back(run);
+  }
+  std::sort(boundaries.begin(), boundaries.end(),
+            [](const Boundary& x, const Boundary& y) {
+              return std::tie(y.length, x.a, x.b) <
+                     std::tie(x.length, y.a, y.b);
+            });
+  return boundaries;
+}
+
+// A link of the skeleton's tree; without a boundary it bridges components.
+struct Link {
+  uint32_t a, b;
+  const Boundary* boundary;
+};
+
+// Kruskal: the longest boundaries that close no cycle.
+std::vector<Link> SpanningForest(const std::vector<Boundary>& boundaries,
+                                 DisjointSets& joined) {
+  std::vector<Link> links;
+  for (const Boundary& boundary : boundaries)
+    if (joined.Union(boundary.a, boundary.b))
+      links.push_back({boundary.a, boundary.b, &boundary});
+  return links;
+}
+
+// Joins every body that is not yet joined to the root's by its centre nearest
+// to one that is (Prim's algorithm over segments).
+void JoinBodies(const std::vector<Eigen::Vector3d>& centres, uint32_t root,
+                DisjointSets& joined, std::vector<Link>& links) {
+  const uint32_t n = static_cast<uint32_t>(centres.size());
+  std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+  std::vector<uint32_t> nearest(n, root);
+  std::vector<bool> reached(n, false);
+  std::vector<uint32_t> fresh;
+  auto reach_body_of = [&](uint32_t s) {
+    for (uint32_t other = 0; other < n; ++other)
+      if (!reached[other] && joined.Find(other) == joined.Find(s)) {
+        reached[other] = true;
+        fresh.push_back(other);
+      }
+  };
+  reach_body_of(root);
+  while (true) {
+    for (uint32_t from : fresh)
+      for (uint32_t to = 0; to < n; ++to)
+        if (!reached[to] &&
+            (centres[to] - centres[from]).norm() < distance[to]) {
+          distance[to] = (centres[to] - centres[from]).norm();
+          nearest[to] = from;
+        }
+    fresh.clear();
+    uint32_t best = kNoIndex;
+    for (uint32_t s = 0; s < n; ++s)
+      if (!reached[s] && (best == kNoIndex || distance[s] < distance[best]))
+        best = s;
+    if (best == kNoIndex) return;
+    links.push_back({nearest[best], best, nullptr});
+    reach_body_of(best);
+  }
+}
+
+// The place of the segment that has most of the faces around the root's medial
+// structure.
+uint32_t RootPlace(const Adjacency& adjacency, const SegmentTree& tree,
+                   const std::vector<uint32_t>& place, size_t num_places) {
+  std::vector<uint32_t> votes(num_places, 0);
+  for (uint32_t v : tree.nodes[0].medial_structure)
+    for (uint32_t f : adjacency.VertexFaces(v)) ++votes[place[f]];
+  return static_cast<uint32_t>(
+      std::max_element(votes.begin(), votes.end()) - votes.begin());
+}
+
+// Breadth first from the root, neighbours in ascending order.
+Skeleton LayOut(const std::vector<Link>& links,
+                const std::vector<uint32_t>& segments,
+                const std::vector<Eigen::Vector3d>& centres, uint32_t root) {
+  std::vector<std::vector<std::pair<uint32_t, const Boundary*>>> neighbours(
+      segments.size());
+  for (const Link& link : links) {
+    neighbours[link.a].push_back({link.b, link.boundary});
+    neighbours[link.b].push_back({link.a, link.boundary});
+  }
+  Skeleton skeleton;
+  std::vector<uint32_t> joint_of(segments.size(), kNoIndex);
+  auto add_centre = [&](uint32_t place, uint32_t parent) {
+    joint_of[place] = static_cast<uint32_t>(skeleton.joints.size());
+    skeleton.joints.push_back(
+        {parent, false, centres[place], {segments[place]}});
+  };
+  std::queue<uint32_t> queue;
+  add_centre(root, kNoIndex);
+  queue.push(root);
+  while (!queue.empty()) {
+    const uint32_t here = queue.front();
+    queue.pop();
+    std::sort(neighbours[here].begin(), neighbours[here].end());
+    for (const auto& [there, boundary] : neighbours[here]) {
+      if (joint_of[there] != kNoIndex) continue;
+      uint32_t parent = joint_of[here];
+      if (boundary != nullptr) {
+        skeleton.joints.push_back({parent, true, boundary->centre,
+                                   {segments[here], segments[there]}});
+        parent = static_cast<uint32_t>(skeleton.joints.size() - 1);
+      }
+      add_centre(there, parent);
+      queue.push(there);
+    }
+  }
+  return skeleton;
+}
+
+}  // namespace
+
+Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
+                       const SegmentTree& tree, uint32_t level) {
+  const std::vector<uint32_t> segments = tree.SegmentsAtLevel(level);
+  std::vector<uint32_t> place(mesh.NumFaces());
+  std::vector<Eigen::Vector3d> centres;
+  for (uint32_t s = 0; s < segments.size(); ++s) {
+    for (uint32_t f : tree.nodes[segments[s]].faces) place[f] = s;
+    centres.push_back(tree.nodes[segments[s]].centroid);
+  }
+  const uint32_t root = RootPlace(adjacency, tree, place, segments.size());
+  const std::vector<Boundary> boundaries =
+      FindBoundaries(mesh, adjacency, place);
+  DisjointSets joined(static_cast<uint32_t>(segments.size()));
+  std::vector<Link> links = SpanningForest(boundaries, joined);
+  JoinBodies(centres, root, joined, links);
+  return LayOut(links, segments, centres, root);
+}
+
+}  // namespace marrow
