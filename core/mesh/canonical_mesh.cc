@@ -1,0 +1,296 @@
+#include "core/mesh/canonical_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/error_reason.h"
+#include "core/base/status_macros.h"
+
+namespace marrow {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "the digest is of little-endian bytes");
+
+absl::Status Rejected(const std::string& what) {
+  return WithReason(absl::InvalidArgumentError(what), kReasonMeshRejected);
+}
+
+// The different positions of the payload in canonical order, called spots
+// until it is known which of them are vertices.
+struct Spots {
+  Positions positions;
+  std::vector<uint32_t> of_point;
+};
+
+Spots Weld(const Positions& points) {
+  struct Record {
+    double x, y, z;
+    uint32_t point;
+    bool SamePlace(const Record& r) const {
+      return x == r.x && y == r.y && z == r.z;
+    }
+  };
+  std::vector<Record> records(points.rows());
+  for (uint32_t p = 0; p < records.size(); ++p) {
+    // Adding 0 makes -0 into 0 and leaves everything else.
+    records[p] = {points(p, 0) + 0.0, points(p, 1) + 0.0, points(p, 2) + 0.0,
+                  p};
+  }
+  std::sort(records.begin(), records.end(),
+            [](const Record& a, const Record& b) {
+              return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+            });
+  Spots spots;
+  spots.of_point.resize(records.size());
+  spots.positions.resize(points.rows(), 3);
+  uint32_t count = 0;
+  for (size_t i = 0; i < records.size(); ++i) {
+    if (i == 0 || !records[i].SamePlace(records[i - 1])) {
+      spots.positions.row(count++) << records[i].x, records[i].y, records[i].z;
+    }
+    spots.of_point[records[i].point] = count - 1;
+  }
+  spots.positions.conservativeResize(count, 3);
+  return spots;
+}
+
+// A face between spots that begins with the least.
+struct FaceRecord {
+  Triangle spots;
+  uint32_t decoded_face;
+
+  std::array<uint32_t, 3> Set() const {
+    return {spots[0], std::min(spots[1], spots[2]),
+            std::max(spots[1], spots[2])};
+  }
+};
+
+bool IsDegenerate(const Triangle& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+Triangle OnSpots(const Triangle& face, const Spots& spots) {
+  return {spots.of_point[face[0]], spots.of_point[face[1]],
+          spots.of_point[face[2]]};
+}
+
+std::vector<FaceRecord> RotatedFaces(const DecodedMesh& decoded,
+                                     const Spots& spots) {
+  std::vector<FaceRecord> records;
+  records.reserve(decoded.faces.size());
+  for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
+    Triangle t = OnSpots(decoded.faces[f], spots);
+    if (IsDegenerate(t)) continue;
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    records.push_back({t, f});
+  }
+  return records;
+}
+
+// Fills result.mesh.faces (still between spots) and the face_map of all but
+// degenerate faces.
+void KeepFaces(std::vector<FaceRecord> records, CanonicalMesh& result) {
+  // Twins side by side, the one to keep first.
+  std::sort(records.begin(), records.end(),
+            [](const FaceRecord& a, const FaceRecord& b) {
+              return std::tuple(a.Set(), a.spots) <
+                     std::tuple(b.Set(), b.spots);
+            });
+  for (size_t i = 1; i < records.size(); ++i) {
+    if (records[i].Set() != records[i - 1].Set()) continue;
+    records[i].spots = records[i - 1].spots;
+    ++result.report.duplicate_faces;
+  }
+  std::sort(records.begin(), records.end(),
+            [](const FaceRecord& a, const FaceRecord& b) {
+              return a.spots < b.spots;
+            });
+  std::vector<Triangle>& faces = result.mesh.faces;
+  for (const FaceRecord& record : records) {
+    if (faces.empty() || faces.back() != record.spots) {
+      faces.push_back(record.spots);
+    }
+    result.face_map[record.decoded_face] =
+        static_cast<uint32_t>(faces.size() - 1);
+  }
+}
+
+// Numbers the spots that are used; the numbers keep the order of the spots, so
+// the faces stay rotated and sorted. Returns spot -> vertex.
+std::vector<uint32_t> KeepVertices(const Spots& spots, TriangleMesh& mesh) {
+  std::vector<uint32_t> vertex_of_spot(spots.positions.rows(), kNoIndex);
+  for (const Triangle& face : mesh.faces) {
+    for (uint32_t spot : face) vertex_of_spot[spot] = 0;
+  }
+  mesh.positions.resize(spots.positions.rows(), 3);
+  uint32_t count = 0;
+  for (uint32_t spot = 0; spot < vertex_of_spot.size(); ++spot) {
+    if (vertex_of_spot[spot] == kNoIndex) continue;
+    mesh.positions.row(count) = spots.positions.row(spot);
+    vertex_of_spot[spot] = count++;
+  }
+  mesh.positions.conservativeResize(count, 3);
+  for (Triangle& face : mesh.faces) {
+    for (uint32_t& corner : face) corner = vertex_of_spot[corner];
+  }
+  return vertex_of_spot;
+}
+
+// Finds the kept face whose labels a dropped degenerate face shall have.
+class NeighbourFinder {
+ public:
+  NeighbourFinder(const TriangleMesh& mesh, const Spots& spots,
+                  const std::vector<uint32_t>& vertex_of_spot)
+      : spots_(spots),
+        vertex_of_spot_(vertex_of_spot),
+        first_face_(mesh.NumVertices(), kNoIndex) {
+    for (uint32_t f = mesh.NumFaces(); f-- > 0;) {
+      const auto [a, b, c] = mesh.faces[f];
+      first_face_[a] = first_face_[b] = first_face_[c] = f;
+      for (const auto& [v, w] : {std::pair{a, b}, {b, c}, {c, a}}) {
+        sides_.push_back({std::min(v, w), std::max(v, w), f});
+      }
+    }
+    std::sort(sides_.begin(), sides_.end());
+    FindNearestUsed();
+  }
+
+  uint32_t FaceFor(const Triangle& degenerate) const {
+    const auto [lesser, greater] =
+        std::minmax({degenerate[0], degenerate[1], degenerate[2]});
+    const uint32_t v = vertex_of_spot_[lesser];
+    const uint32_t w = vertex_of_spot_[greater];
+    if (v != kNoIndex && w != kNoIndex) {
+      const auto side = std::lower_bound(sides_.begin(), sides_.end(),
+                                         std::array<uint32_t, 3>{v, w, 0});
+      if (side != sides_.end() && (*side)[0] == v && (*side)[1] == w) {
+        return (*side)[2];
+      }
+    }
+    if (v != kNoIndex) return first_face_[v];
+    if (w != kNoIndex) return first_face_[w];
+    return first_face_[vertex_of_spot_[nearest_used_[lesser]]];
+  }
+
+ private:
+  // For each spot the nearer of the used spots before and after it.
+  void FindNearestUsed() {
+    const uint32_t count = static_cast<uint32_t>(vertex_of_spot_.size());
+    nearest_used_.assign(count, kNoIndex);
+    uint32_t before = kNoIndex;
+    for (uint32_t s = 0; s < count; ++s) {
+      if (vertex_of_spot_[s] != kNoIndex) before = s;
+      nearest_used_[s] = before;
+    }
+    uint32_t after = kNoIndex;
+    for (uint32_t s = count; s-- > 0;) {
+      if (vertex_of_spot_[s] != kNoIndex) after = s;
+      if (after == kNoIndex) continue;
+      const uint32_t previous = nearest_used_[s];
+      if (previous == kNoIndex || Distance(s, after) < Distance(s, previous)) {
+        nearest_used_[s] = after;
+      }
+    }
+  }
+
+  double Distance(uint32_t s, uint32_t t) const {
+    return (spots_.positions.row(s) - spots_.positions.row(t)).stableNorm();
+  }
+
+  const Spots& spots_;
+  const std::vector<uint32_t>& vertex_of_spot_;
+  std::vector<uint32_t> first_face_;
+  std::vector<std::array<uint32_t, 3>> sides_;  // ends, face; sorted
+  std::vector<uint32_t> nearest_used_;
+};
+
+void MapDegenerateFaces(const DecodedMesh& decoded, const Spots& spots,
+                        const std::vector<uint32_t>& vertex_of_spot,
+                        CanonicalMesh& result) {
+  if (result.report.degenerate_faces == 0) return;
+  const NeighbourFinder finder(result.mesh, spots, vertex_of_spot);
+  for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
+    if (result.face_map[f] != kNoIndex) continue;
+    result.face_map[f] = finder.FaceFor(OnSpots(decoded.faces[f], spots));
+  }
+}
+
+uint64_t CountUnusedPoints(const DecodedMesh& decoded) {
+  std::vector<bool> used(decoded.positions.rows(), false);
+  for (const Triangle& face : decoded.faces) {
+    for (uint32_t p : face) used[p] = true;
+  }
+  return std::count(used.begin(), used.end(), false);
+}
+
+absl::Status CheckSize(const MeshReport& report) {
+  if (!(report.box_max - report.box_min).allFinite() ||
+      !std::isfinite(report.area)) {
+    return Rejected(
+        "the mesh is so large that its extent or area overflows; scale it "
+        "down");
+  }
+  if (report.zero_area_faces == report.faces) {
+    return Rejected(
+        "the area of the mesh is zero: the corners of every face lie on a "
+        "line");
+  }
+  if (report.area == 0) {
+    return Rejected(
+        "the mesh is so small that its area underflows to zero; scale it up");
+  }
+  return absl::OkStatus();
+}
+
+Digest DigestOf(const TriangleMesh& mesh) {
+  DigestBuilder builder("marrow.geometry/1");
+  builder.AddU64(mesh.NumVertices());
+  builder.AddU64(mesh.NumFaces());
+  builder.Add(mesh.positions.data(), mesh.positions.size() * sizeof(double));
+  builder.Add(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle));
+  return builder.Finish();
+}
+
+}  // namespace
+
+absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
+  if (decoded.faces.empty()) return Rejected("the mesh has no faces");
+  const Spots spots = Weld(decoded.positions);
+  std::vector<FaceRecord> records = RotatedFaces(decoded, spots);
+  if (records.empty()) {
+    return Rejected(absl::StrCat(
+        "all ", decoded.faces.size(),
+        " faces are degenerate: each has two corners at one position"));
+  }
+  CanonicalMesh result;
+  const uint64_t degenerate_faces = decoded.faces.size() - records.size();
+  result.face_map.assign(decoded.faces.size(), kNoIndex);
+  KeepFaces(std::move(records), result);
+  const uint64_t duplicate_faces = result.report.duplicate_faces;
+  const std::vector<uint32_t> vertex_of_spot = KeepVertices(spots, result.mesh);
+  result.report = ReportOn(result.mesh);
+  result.report.decoded_points = decoded.positions.rows();
+  result.report.decoded_faces = decoded.faces.size();
+  result.report.welded_points =
+      decoded.positions.rows() - spots.positions.rows();
+  result.report.unused_points = CountUnusedPoints(decoded);
+  result.report.degenerate_faces = degenerate_faces;
+  result.report.duplicate_faces = duplicate_faces;
+  MARROW_RETURN_IF_ERROR(CheckSize(result.report));
+
+  MapDegenerateFaces(decoded, spots, vertex_of_spot, result);
+  result.point_map.reserve(spots.of_point.size());
+  for (uint32_t spot : spots.of_point) {
+    result.point_map.push_back(vertex_of_spot[spot]);
+  }
+  result.geometry_digest = DigestOf(result.mesh);
+  return result;
+}
+
+}  // namespace marrow

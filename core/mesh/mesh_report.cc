@@ -1,0 +1,184 @@
+#include "core/mesh/mesh_report.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "core/mesh/adjacency.h"
+
+namespace marrow {
+namespace {
+
+using Eigen::Vector3d;
+
+class UnionFind {
+ public:
+  explicit UnionFind(size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  uint32_t Find(uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  // The lesser root stays one.
+  void Join(uint32_t i, uint32_t j) {
+    i = Find(i);
+    j = Find(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<uint32_t> parent_;
+};
+
+// A sum of doubles without rounding: components that do not overlap, so that
+// it is zero only where each of them is.
+class ExactSum {
+ public:
+  void Add(double x) {
+    for (size_t i = 0; i < size_; ++i) {
+      const double sum = x + parts_[i];
+      const double part = sum - x;
+      parts_[i] = (x - (sum - part)) + (parts_[i] - part);
+      x = sum;
+    }
+    parts_[size_++] = x;
+  }
+  void AddProduct(double a, double b) {
+    const double product = a * b;
+    Add(std::fma(a, b, -product));
+    Add(product);
+  }
+  bool IsZero() const {
+    return std::all_of(parts_, parts_ + size_, [](double p) { return p == 0; });
+  }
+
+ private:
+  double parts_[12] = {};
+  size_t size_ = 0;
+};
+
+// Whether a, b and c, seen along one axis, lie on a line.
+bool CollinearInPlane(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                      int x, int y) {
+  ExactSum twice_area;
+  for (const auto& [p, q] : {std::pair{&a, &b}, {&b, &c}, {&c, &a}}) {
+    twice_area.AddProduct((*p)[x], (*q)[y]);
+    twice_area.AddProduct(-(*q)[x], (*p)[y]);
+  }
+  return twice_area.IsZero();
+}
+
+bool Collinear(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return CollinearInPlane(a, b, c, 0, 1) && CollinearInPlane(a, b, c, 1, 2) &&
+         CollinearInPlane(a, b, c, 2, 0);
+}
+
+// A power of two that brings the largest coordinate near 1: exact, and squares
+// of what it scales neither overflow nor underflow.
+double UnitScale(const TriangleMesh& mesh) {
+  const double largest = mesh.positions.cwiseAbs().maxCoeff();
+  if (largest == 0) return 1;
+  return std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+}
+
+void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
+  // Below this share of the longest coordinates the rounding of the cross
+  // product could hide that the corners are not quite on a line.
+  constexpr double kDoubt = 1e-14;
+  const double scale = UnitScale(mesh);
+  double twice_area = 0;
+  for (const Triangle& face : mesh.faces) {
+    const Vector3d a = mesh.Position(face[0]) * scale;
+    const Vector3d b = mesh.Position(face[1]) * scale;
+    const Vector3d c = mesh.Position(face[2]) * scale;
+    const double cross = (b - a).cross(c - a).norm();
+    const double reach =
+        std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+    if (cross <= kDoubt * reach && Collinear(a, b, c)) {
+      ++report.zero_area_faces;
+    } else {
+      twice_area += cross;
+    }
+  }
+  report.area = twice_area / 2 / scale / scale;
+}
+
+void CountEdges(const Adjacency& adjacency, MeshReport& report) {
+  UnionFind loops(adjacency.NumVertices());
+  std::vector<uint32_t> rims;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    if (adjacency.EdgeFaces(e).size() >= 3) ++report.nonmanifold_edges;
+    if (!adjacency.IsBoundaryEdge(e)) continue;
+    ++report.boundary_edges;
+    const auto [v, w] = adjacency.EdgeVertices(e);
+    loops.Join(v, w);
+    rims.push_back(v);
+  }
+  for (uint32_t& v : rims) v = loops.Find(v);
+  std::sort(rims.begin(), rims.end());
+  report.boundary_loops = std::unique(rims.begin(), rims.end()) - rims.begin();
+}
+
+void CountComponents(const TriangleMesh& mesh, MeshReport& report) {
+  UnionFind components(mesh.NumVertices());
+  for (const Triangle& face : mesh.faces) {
+    components.Join(face[0], face[1]);
+    components.Join(face[0], face[2]);
+  }
+  for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
+    if (components.Find(v) == v) ++report.components;
+  }
+}
+
+uint32_t CornerOf(const TriangleMesh& mesh, uint32_t f, uint32_t v) {
+  const Triangle& face = mesh.faces[f];
+  return 3 * f + (face[0] == v ? 0 : face[1] == v ? 1 : 2);
+}
+
+// Joins the corners of a vertex across each edge that has it; every group that
+// is left is a fan.
+void CountSplitVertices(const TriangleMesh& mesh, const Adjacency& adjacency,
+                        MeshReport& report) {
+  UnionFind fans(3 * mesh.faces.size());
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    const auto faces = adjacency.EdgeFaces(e);
+    for (uint32_t v : adjacency.EdgeVertices(e)) {
+      for (uint32_t f : faces) {
+        fans.Join(CornerOf(mesh, faces[0], v), CornerOf(mesh, f, v));
+      }
+    }
+  }
+  std::vector<uint32_t> fans_of_vertex(mesh.NumVertices(), 0);
+  for (uint32_t corner = 0; corner < 3 * mesh.NumFaces(); ++corner) {
+    if (fans.Find(corner) != corner) continue;
+    if (++fans_of_vertex[mesh.faces[corner / 3][corner % 3]] == 2) {
+      ++report.nonmanifold_vertices;
+    }
+  }
+}
+
+}  // namespace
+
+MeshReport ReportOn(const TriangleMesh& mesh) {
+  MeshReport report;
+  report.vertices = mesh.NumVertices();
+  report.faces = mesh.NumFaces();
+  report.box_min = mesh.positions.colwise().minCoeff().transpose();
+  report.box_max = mesh.positions.colwise().maxCoeff().transpose();
+  const Adjacency adjacency(mesh);
+  MeasureArea(mesh, report);
+  CountEdges(adjacency, report);
+  CountComponents(mesh, report);
+  CountSplitVertices(mesh, adjacency, report);
+  report.euler_characteristic = static_cast<int64_t>(report.vertices) -
+                                adjacency.NumEdges() +
+                                static_cast<int64_t>(report.faces);
+  return report;
+}
+
+}  // namespace marrow
