@@ -91,7 +91,7 @@ StructureDistance::StructureDistance(StructureDistance&& other) noexcept
 double StructureDistance::operator()(uint32_t vertex) const {
   if (!index_) return (points_.rowwise() - Phi_->row(vertex))
                           .rowwise().squaredNorm().minCoeff();
-  size_t nearest = 0;
+  uint32_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   index_->tree.knnSearch(Phi_->row(vertex).data(), 1, &nearest, &distance);
   return distance;
