@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "client/mesh_file/readers.h"
+#include "client/mesh_file/text_scanner.h"
+#include "core/base/status_macros.h"
+
+namespace marrow {
+namespace {
+
+// Colours and normals are skipped: they follow the coordinates on a vertex's
+// line and the corners on a face's line.
+class OffReader {
+ public:
+  OffReader(const std::string& path, std::string_view text)
+      : size_(text.size()), scanner_(path, text) {}
+
+  absl::StatusOr<PolygonMesh> Read() {
+    MARROW_RETURN_IF_ERROR(ReadHeader());
+    MARROW_RETURN_IF_ERROR(ReadVertices());
+    MARROW_RETURN_IF_ERROR(ReadFaces());
+    return std::move(mesh_);
+  }
+
+ private:
+  absl::Status ReadHeader();
+  absl::Status ReadKeyword(std::string_view keyword);
+  absl::Status ReadVertices();
+  absl::Status ReadFaces();
+  absl::Status ReadFace(int64_t face);
+  absl::Status ReadCount(std::string_view token, const char* what,
+                         int64_t* count);
+
+  const size_t size_;
+  TextScanner scanner_;
+  bool homogeneous_ = false;  // 4OFF: x y z w, and the point is xyz / w
+  int64_t num_vertices_ = 0;
+  int64_t num_faces_ = 0;
+  PolygonMesh mesh_;
+};
+
+absl::Status OffReader::ReadKeyword(std::string_view keyword) {
+  std::string_view prefix = keyword.substr(0, keyword.size() - 3);
+  if (prefix.substr(0, 2) == "ST") prefix.remove_prefix(2);
+  if (prefix.substr(0, 1) == "C") prefix.remove_prefix(1);
+  if (prefix.substr(0, 1) == "N") prefix.remove_prefix(1);
+  if (prefix.substr(0, 1) == "4") {
+    homogeneous_ = true;
+    prefix.remove_prefix(1);
+  }
+  if (!prefix.empty()) {
+    return scanner_.Error(absl::StrCat(
+        "cannot read the variant ", Quoted(keyword),
+        "; save the mesh as plain OFF, with three coordinates a vertex"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status OffReader::ReadCount(std::string_view token, const char* what,
+                                  int64_t* count) {
+  if (token == "BINARY") {
+    return scanner_.Error("binary OFF is not supported; save it as text");
+  }
+  // Each vertex and face takes two bytes at the least.
+  if (!ParseInt64(token, count) || *count < 0 ||
+      static_cast<uint64_t>(*count) > size_) {
+    return scanner_.Error(absl::StrCat("the number of ", what, " is ",
+                                       Quoted(token),
+                                       ", which this file cannot hold"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status OffReader::ReadHeader() {
+  std::string_view token = scanner_.NextTokenAcrossLines();
+  if (token.size() >= 3 && token.substr(token.size() - 3) == "OFF") {
+    MARROW_RETURN_IF_ERROR(ReadKeyword(token));
+    token = scanner_.NextTokenAcrossLines();
+  } else if (int64_t count; !ParseInt64(token, &count)) {
+    return scanner_.Error(absl::StrCat("begins with ", Quoted(token),
+                                       " where an OFF file has 'OFF'"));
+  }
+  MARROW_RETURN_IF_ERROR(ReadCount(token, "vertices", &num_vertices_));
+  MARROW_RETURN_IF_ERROR(
+      ReadCount(scanner_.NextTokenAcrossLines(), "faces", &num_faces_));
+  return absl::OkStatus();
+}
+
+absl::Status OffReader::ReadVertices() {
+  mesh_.positions.reserve(num_vertices_);
+  for (int64_t v = 0; v < num_vertices_; ++v) {
+    if (!scanner_.NextLine()) {
+      return scanner_.Error(absl::StrCat("the file ends after ", v, " of ",
+                                         num_vertices_,
+                                         " vertices; it may be cut off"));
+    }
+    std::array<float, 4> xyzw = {0, 0, 0, 1};
+    for (int i = 0; i < (homogeneous_ ? 4 : 3); ++i) {
+      const std::string_view token = scanner_.NextTokenAcrossLines();
+      if (!ParseFloat(token, &xyzw[i])) {
+        return scanner_.Error(absl::StrCat("vertex ", v, ": ", Quoted(token),
+                                           " is not a coordinate"));
+      }
+    }
+    mesh_.positions.push_back(
+        {xyzw[0] / xyzw[3], xyzw[1] / xyzw[3], xyzw[2] / xyzw[3]});
+  }
+  return absl::OkStatus();
+}
+
+absl::Status OffReader::ReadFaces() {
+  mesh_.face_offsets.reserve(num_faces_ + 1);
+  mesh_.face_vertices.reserve(std::min<size_t>(3 * num_faces_, size_ / 2));
+  for (int64_t f = 0; f < num_faces_; ++f) {
+    if (!scanner_.NextLine()) {
+      return scanner_.Error(absl::StrCat("the file ends after ", f, " of ",
+                                         num_faces_,
+                                         " faces; it may be cut off"));
+    }
+    MARROW_RETURN_IF_ERROR(ReadFace(f));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status OffReader::ReadFace(int64_t face) {
+  int64_t corners = 0;
+  const std::string_view count = scanner_.NextToken();
+  if (!ParseInt64(count, &corners) || corners < 0) {
+    return scanner_.Error(absl::StrCat("face ", face, ": ", Quoted(count),
+                                       " is not a number of corners"));
+  }
+  for (int64_t i = 0; i < corners; ++i) {
+    const std::string_view token = scanner_.NextTokenAcrossLines();
+    int64_t vertex = 0;
+    if (!ParseInt64(token, &vertex)) {
+      return scanner_.Error(absl::StrCat("face ", face, ": ", Quoted(token),
+                                         " is not a vertex index"));
+    }
+    if (vertex < 0 || vertex >= num_vertices_) {
+      return scanner_.Error(absl::StrCat(
+          "vertex index ", vertex, " is out of range (the file has ",
+          num_vertices_, " vertices, counted from 0)"));
+    }
+    mesh_.face_vertices.push_back(static_cast<uint32_t>(vertex));
+  }
+  mesh_.face_offsets.push_back(
+      static_cast<uint32_t>(mesh_.face_vertices.size()));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<PolygonMesh> ReadOff(const std::string& path,
+                                    std::string_view bytes) {
+  return OffReader(path, bytes).Read();
+}
+
+}  // namespace marrow
