@@ -1,0 +1,27 @@
+// Parts and poses of points on a creature's skin.
+#ifndef MARROW_CLIENT_SAMPLES_POSE_H_
+#define MARROW_CLIENT_SAMPLES_POSE_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "client/samples/creature.h"
+#include "client/samples/field.h"
+
+namespace marrow {
+
+// The part whose own surface is nearest to `p`: at the root of a limb, the
+// border of two parts is the crease.
+uint32_t PartAt(const CreatureField& field, const Eigen::Vector3d& p);
+
+// Where points of the rest pose are in `pose`. Bent skin keeps its lengths as
+// well as bent skin can: each joint turns a point by a share of its angle
+// that grows smoothly along the limb, instead of mixing turned positions.
+std::vector<Eigen::Vector3d> PosePoints(
+    const Creature& creature, const CreatureField& field,
+    const CreaturePose& pose, const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace marrow
+
+#endif  // MARROW_CLIENT_SAMPLES_POSE_H_
