@@ -6,7 +6,7 @@ namespace {
 // A joint bends over a band a little wider than the limb is thick: narrower,
 // and the skin inside a right-angled elbow would fold over itself.
 constexpr double kJointWidthPerRadius = 1.6;
-constexpr double kRootWidthPerRadius = 0.9;
+constexpr double kRootWidthPerRadius = 1.2;
 
 Eigen::Vector3d DirectionAt(const std::vector<LimbNode>& nodes, size_t i) {
   Eigen::Vector3d ahead =
@@ -37,7 +37,7 @@ CreaturePart& AddLimb(const std::string& name,
   const auto part_id = static_cast<uint32_t>(creature.parts.size());
   CreaturePart& part = creature.parts.emplace_back();
   part.name = name;
-  part.inner_blend = 0.5 * nodes.back().radius;
+  part.inner_blend = 0.3 * nodes.back().radius;
   part.outer_blend = outer_blend;
   part.root = nodes.front().position;
   part.root_width = kRootWidthPerRadius * nodes.front().radius;

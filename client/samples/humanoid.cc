@@ -21,7 +21,7 @@ Vector3d ElbowBend(double degrees) {
 CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
-  torso.inner_blend = 0.06;
+  torso.inner_blend = 0.04;
   torso.cones = {
       {{-0.075, 0.96, 0}, {0.075, 0.96, 0}, 0.125, 0.125},    // pelvis
       {{0, 0.98, 0}, {0, 1.15, 0.01}, 0.12, 0.12},            // belly

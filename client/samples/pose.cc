@@ -74,13 +74,6 @@ std::vector<Eigen::Vector3d> TurnsOf(const Creature& creature,
 
 }  // namespace
 
-uint32_t PartAt(const CreatureField& field, const Eigen::Vector3d& p) {
-  const std::vector<double> distances = field.PartDistances(p);
-  return static_cast<uint32_t>(
-      std::min_element(distances.begin(), distances.end()) -
-      distances.begin());
-}
-
 std::vector<Eigen::Vector3d> PosePoints(
     const Creature& creature, const CreatureField& field,
     const CreaturePose& pose, const std::vector<Eigen::Vector3d>& points) {

@@ -1,19 +1,14 @@
-// Parts and poses of points on a creature's skin.
+// Poses of points on a creature's skin.
 #ifndef MARROW_CLIENT_SAMPLES_POSE_H_
 #define MARROW_CLIENT_SAMPLES_POSE_H_
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "client/samples/creature.h"
 #include "client/samples/field.h"
 
 namespace marrow {
-
-// The part whose own surface is nearest to `p`: at the root of a limb, the
-// border of two parts is the crease.
-uint32_t PartAt(const CreatureField& field, const Eigen::Vector3d& p);
 
 // Where points of the rest pose are in `pose`. Bent skin keeps its lengths as
 // well as bent skin can: each joint turns a point by a share of its angle

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
-  torso.inner_blend = 0.1;
+  torso.inner_blend = 0.05;
   torso.cones = {
       {{-0.05, 0.98, -0.42}, {0.05, 0.98, -0.42}, 0.165, 0.165},
       {{0, 1.0, -0.4}, {0, 0.99, 0}, 0.165, 0.165},
@@ -31,8 +31,8 @@ void AddHead(Creature& creature) {
   for (const double side : {-1., 1.}) {
     head.cones.push_back({{side * 0.065, 1.58, 0.72},
                           {side * 0.095, 1.73, 0.7},
-                          0.035,
-                          0.014});
+                          0.042,
+                          0.022});
   }
 }
 

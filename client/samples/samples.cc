@@ -8,6 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "client/samples/creature.h"
 #include "client/samples/field.h"
+#include "client/samples/parts.h"
 #include "client/samples/polygonize.h"
 #include "client/samples/pose.h"
 #include "client/samples/remesh.h"
@@ -21,7 +22,10 @@ namespace {
 constexpr double kFacesBeforeCollapse = 3;
 constexpr double kLeastFacesBeforeCollapse = 40000;
 constexpr double kTrialCellsAcross = 60;
-constexpr int kRelaxRounds = 10;
+// Edges that could not be collapsed among the first ragged triangles can be
+// once these are smooth.
+constexpr double kFacesBeforeLastPass = 1.2;
+constexpr int kRelaxRounds = 6;
 
 const std::vector<Creature>& Creatures() {
   static const auto& creatures = *new std::vector<Creature>{
@@ -57,21 +61,12 @@ absl::StatusOr<SurfaceMesh> MakeSkin(const CreatureField& field,
                                      uint32_t faces) {
   SurfaceMesh mesh = PolygonizeWithAtLeast(
       std::max(kFacesBeforeCollapse * faces, kLeastFacesBeforeCollapse), field);
+  const auto nearly = static_cast<uint32_t>(kFacesBeforeLastPass * faces);
+  MARROW_RETURN_IF_ERROR(CollapseTo(nearly - nearly % 2, field, mesh));
+  Relax(field, kRelaxRounds, mesh);
   MARROW_RETURN_IF_ERROR(CollapseTo(faces, field, mesh));
   Relax(field, kRelaxRounds, mesh);
   return mesh;
-}
-
-std::vector<uint32_t> PartsOfFaces(const CreatureField& field,
-                                   const SurfaceMesh& mesh) {
-  std::vector<uint32_t> parts;
-  parts.reserve(mesh.faces.size());
-  for (const auto& [a, b, c] : mesh.faces) {
-    parts.push_back(PartAt(field, (mesh.positions[a] + mesh.positions[b] +
-                                   mesh.positions[c]) /
-                                      3));
-  }
-  return parts;
 }
 
 PolygonMesh ToPolygonMesh(
