@@ -1,0 +1,159 @@
+#include <Eigen/Geometry>
+
+#include "client/samples/creature.h"
+
+namespace marrow {
+namespace {
+
+using Eigen::Vector3d;
+
+// At rest the left arm runs along this line, 40 degrees below the horizon.
+const Vector3d& ArmLine() {
+  static const Vector3d line(0.766, -0.643, 0);
+  return line;
+}
+
+// Lifts the left forearm to the front.
+Vector3d ElbowBend(double degrees) {
+  return degrees * ArmLine().cross(Vector3d::UnitZ());
+}
+
+CreaturePart Torso() {
+  CreaturePart torso;
+  torso.name = "torso";
+  torso.inner_blend = 0.04;
+  torso.cones = {
+      {{-0.075, 0.96, 0}, {0.075, 0.96, 0}, 0.125, 0.125},    // pelvis
+      {{0, 0.98, 0}, {0, 1.15, 0.01}, 0.12, 0.12},            // belly
+      {{-0.05, 1.16, 0.01}, {0.05, 1.16, 0.01}, 0.11, 0.11},  // waist
+      {{-0.09, 1.31, 0.01}, {0.09, 1.31, 0.01}, 0.125, 0.125},
+      {{-0.13, 1.4, 0}, {0.13, 1.4, 0}, 0.08, 0.08},  // shoulders
+  };
+  return torso;
+}
+
+void AddHead(Creature& creature) {
+  CreaturePart& head = AddLimb("head",
+                               {{{0, 1.43, -0.01}, 0.062},
+                                {{0, 1.56, 0.005}, 0.055},
+                                {{0, 1.68, 0.0}, 0.1}},
+                               0.03, creature);
+  head.inner_blend = 0.04;
+  head.cones.push_back({{0, 1.72, -0.025}, {0, 1.69, 0.01}, 0.105, 0.1});
+  head.cones.push_back({{0, 1.62, 0.04}, {0, 1.6, 0.055}, 0.06, 0.05});
+  head.cones.push_back({{0, 1.69, 0.1}, {0, 1.65, 0.122}, 0.012, 0.018});
+  for (const double side : {-1., 1.}) {
+    head.cones.push_back({{side * 0.1, 1.65, -0.015},
+                          {side * 0.112, 1.69, -0.025},
+                          0.015,
+                          0.02});
+  }
+}
+
+void AddArms(Creature& creature) {
+  const Vector3d shoulder(0.19, 1.39, 0);
+  const auto at = [&](double distance, double front) -> Vector3d {
+    return shoulder + distance * ArmLine() + front * Vector3d::UnitZ();
+  };
+  AddLimbPair("arm",
+              {{shoulder, 0.072},
+               {at(0.28, -0.005), 0.046},
+               {at(0.54, 0.005), 0.033},
+               {at(0.72, 0.01), 0.024}},
+              {{at(0.08, 0.015), at(0.18, 0.012), 0.056, 0.048},
+               {at(0.33, 0), at(0.4, 0), 0.05, 0.042},
+               {at(0.58, 0.03), at(0.65, 0.033), 0.026, 0.026},
+               {at(0.58, -0.02), at(0.65, -0.022), 0.026, 0.025},
+               {at(0.66, 0.036), at(0.73, 0.036), 0.022, 0.017},
+               {at(0.66, -0.014), at(0.73, -0.016), 0.022, 0.017},
+               {at(0.57, 0.035), at(0.63, 0.085), 0.022, 0.017}},
+              0.05, creature);
+}
+
+void AddLegs(Creature& creature) {
+  AddLimbPair("leg",
+              {{{0.105, 0.9, 0}, 0.1},
+               {{0.15, 0.51, 0.015}, 0.06},
+               {{0.185, 0.09, -0.025}, 0.04},
+               {{0.205, 0.035, 0.13}, 0.032}},
+              {{{0.155, 0.42, -0.012}, {0.168, 0.3, -0.025}, 0.058, 0.05},
+               {{0.185, 0.045, -0.05}, {0.195, 0.04, 0.06}, 0.042, 0.04},
+               {{0.225, 0.033, 0.1}, {0.232, 0.03, 0.15}, 0.03, 0.026},
+               {{0.185, 0.033, 0.12}, {0.19, 0.03, 0.17}, 0.03, 0.027}},
+              0.045, creature);
+}
+
+CreaturePose Walk() {
+  CreaturePose pose{"walk", {}};
+  TurnBoth("arm", 0, {0, 0, -38}, pose);
+  pose.turns.push_back({"left_arm", 0, {30, 0, 0}});
+  pose.turns.push_back({"right_arm", 0, {-32, 0, 0}});
+  TurnBoth("arm", 1, ElbowBend(28), pose);
+  pose.turns.push_back({"left_leg", 0, {-32, 0, 0}});
+  pose.turns.push_back({"left_leg", 1, {14, 0, 0}});
+  pose.turns.push_back({"left_leg", 2, {-8, 0, 0}});
+  pose.turns.push_back({"right_leg", 0, {22, 0, 0}});
+  pose.turns.push_back({"right_leg", 1, {38, 0, 0}});
+  pose.turns.push_back({"right_leg", 2, {22, 0, 0}});
+  pose.turns.push_back({"torso", 0, {4, 6, 0}});
+  return pose;
+}
+
+CreaturePose Sit() {
+  CreaturePose pose{"sit", {}};
+  TurnBoth("leg", 0, {-82, 0, 0}, pose);
+  TurnBoth("leg", 1, {84, 0, 0}, pose);
+  TurnBoth("arm", 0, {0, 0, -30}, pose);
+  TurnBoth("arm", 0, {-38, 0, 0}, pose);
+  TurnBoth("arm", 1, ElbowBend(45), pose);
+  pose.turns.push_back({"torso", 0, {8, 0, 0}});
+  pose.turns.push_back({"head", 1, {10, 25, 0}});
+  return pose;
+}
+
+CreaturePose Wave() {
+  CreaturePose pose{"wave", {}};
+  pose.turns.push_back({"right_arm", 0, {0, 0, -62}});
+  pose.turns.push_back({"right_arm", 1, {0, 0, -72}});
+  pose.turns.push_back({"right_arm", 2, {0, 0, 14}});
+  pose.turns.push_back({"left_arm", 0, {0, 0, -22}});
+  pose.turns.push_back({"left_arm", 1, ElbowBend(20)});
+  pose.turns.push_back({"left_leg", 0, {0, 0, 8}});
+  pose.turns.push_back({"torso", 0, {0, 0, 5}});
+  pose.turns.push_back({"head", 1, {0, 0, 12}});
+  return pose;
+}
+
+CreaturePose Run() {
+  CreaturePose pose{"run", {}};
+  TurnBoth("arm", 0, {0, 0, -35}, pose);
+  pose.turns.push_back({"left_arm", 0, {48, 0, 0}});
+  pose.turns.push_back({"right_arm", 0, {-46, 0, 0}});
+  TurnBoth("arm", 1, ElbowBend(82), pose);
+  pose.turns.push_back({"left_leg", 0, {-72, 0, 0}});
+  pose.turns.push_back({"left_leg", 1, {78, 0, 0}});
+  pose.turns.push_back({"right_leg", 0, {28, 0, 0}});
+  pose.turns.push_back({"right_leg", 1, {68, 0, 0}});
+  pose.turns.push_back({"right_leg", 2, {30, 0, 0}});
+  pose.turns.push_back({"torso", 0, {16, 10, 0}});
+  pose.turns.push_back({"head", 1, {-12, 0, 0}});
+  return pose;
+}
+
+}  // namespace
+
+Creature MakeHumanoid() {
+  Creature creature;
+  creature.name = "humanoid";
+  creature.description = "a person with head, two arms and two legs";
+  creature.parts.push_back(Torso());
+  creature.joints.push_back(
+      {0, 0, {0, 1.12, 0}, Vector3d::UnitY(), 0.16});  // waist
+  AddHead(creature);
+  AddArms(creature);
+  AddLegs(creature);
+  creature.poses = {{"rest", {}}, Walk(), Run(), Sit(), Wave()};
+  return creature;
+}
+
+}  // namespace marrow
