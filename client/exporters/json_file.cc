@@ -8,6 +8,10 @@
 namespace marrow {
 namespace {
 
+using client::Joint;
+using client::kNone;
+using client::Level;
+using client::SegmentNode;
 using Json = nlohmann::ordered_json;
 
 Json IdOrNull(uint32_t id) { return id == kNone ? Json(nullptr) : Json(id); }
@@ -77,7 +81,7 @@ void Write(const Json& value, int depth, const std::string& indent,
 }  // namespace
 
 std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
-                     const Segmentation& segmentation) {
+                     const client::Segmentation& segmentation) {
   Json nodes = Json::array();
   for (const SegmentNode& node : segmentation.nodes) {
     nodes.push_back(NodeJson(node));

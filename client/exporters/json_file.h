@@ -18,7 +18,7 @@ inline constexpr std::string_view kJsonSchema = "marrow.segmentation/1";
 // are not finite become null. Finite numbers read back exactly. The order of
 // the keys is fixed.
 std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
-                     const Segmentation& segmentation);
+                     const client::Segmentation& segmentation);
 
 }  // namespace marrow
 

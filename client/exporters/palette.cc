@@ -41,18 +41,19 @@ uint8_t EncodeSrgb(double linear) {
 }  // namespace
 
 Rgb SegmentColor(uint32_t id) {
-  // Steps of the golden angle come close to an earlier hue after 3, 5, 8, 13
-  // steps; a cycle of five lightnesses sets the last three of these apart.
+  // Steps of the golden angle come close to an earlier hue after 3, 5, 8 and
+  // 13 steps; this order of seven lightnesses sets those apart.
   constexpr double kGoldenTurn = 0.3819660112501051;
   constexpr double kFirstHue = 0.69;
-  constexpr std::array<double, 5> kLightness = {0.70, 0.83, 0.60, 0.77, 0.66};
+  constexpr std::array<double, 7> kLightness = {0.72, 0.60, 0.76, 0.64,
+                                                0.80, 0.68, 0.84};
   const double turn = kFirstHue + kGoldenTurn * id;
   const double hue = 2 * std::numbers::pi * (turn - std::floor(turn));
   double chroma = 0.145;
-  LinearRgb color = FromOklch(kLightness[id % 5], chroma, hue);
+  LinearRgb color = FromOklch(kLightness[id % kLightness.size()], chroma, hue);
   while (!InGamut(color) && chroma > 0) {
     chroma -= 0.005;
-    color = FromOklch(kLightness[id % 5], chroma, hue);
+    color = FromOklch(kLightness[id % kLightness.size()], chroma, hue);
   }
   return {EncodeSrgb(color[0]), EncodeSrgb(color[1]), EncodeSrgb(color[2])};
 }

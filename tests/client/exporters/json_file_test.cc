@@ -12,6 +12,10 @@
 namespace marrow {
 namespace {
 
+using client::Level;
+using client::Point3;
+using client::Segmentation;
+using client::SegmentNode;
 using ::testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
