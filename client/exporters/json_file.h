@@ -1,0 +1,25 @@
+// The whole answer as JSON: tree, levels, skeletons and what was measured.
+#ifndef MARROW_CLIENT_EXPORTERS_JSON_FILE_H_
+#define MARROW_CLIENT_EXPORTERS_JSON_FILE_H_
+
+#include <string>
+#include <string_view>
+
+#include "client/polygon_mesh.h"
+#include "client/segmentation.h"
+
+namespace marrow {
+
+// The schema that JsonFile writes. docs/json.md describes every field.
+inline constexpr std::string_view kJsonSchema = "marrow.segmentation/1";
+
+// `mesh_name` is what the user calls the mesh, such as the file's name. Bytes
+// that are not UTF-8, there or in the segmentation, become U+FFFD; numbers that
+// are not finite become null. Finite numbers read back exactly. The order of
+// the keys is fixed.
+std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
+                     const client::Segmentation& segmentation);
+
+}  // namespace marrow
+
+#endif  // MARROW_CLIENT_EXPORTERS_JSON_FILE_H_
