@@ -1,0 +1,95 @@
+"""What the documents say to type is there to be typed.
+
+MARROW_BIN names the folder of the programs.
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import unittest
+
+import tree
+
+BIN = os.environ["MARROW_BIN"]
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+SHELL_BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def run(*command):
+    return subprocess.run(command, cwd=tree.ROOT, capture_output=True,
+                          text=True, timeout=60, check=True).stdout
+
+
+def documents():
+    for path in tree.files():
+        if path.suffix == ".md":
+            yield path, tree.text(path)
+
+
+def commands(program):
+    """(document, words after the program) of all commands in shell blocks."""
+    for path, text in documents():
+        for block in SHELL_BLOCK.findall(text):
+            for line in block.replace("\\\n", " ").splitlines():
+                words = shlex.split(line, comments=True)
+                if words and os.path.basename(words[0]) == program:
+                    yield path, words[1:]
+
+
+def verbs():
+    return re.findall(r"^  ([a-z]+)  ", run("./dev"), re.MULTILINE)
+
+
+class DocumentsTest(unittest.TestCase):
+
+    def check_options(self, path, help_text, words):
+        for word in words:
+            if not word.startswith("-"):
+                continue
+            option = re.escape(word.split("=")[0])
+            with self.subTest(f"{path}: {' '.join(words)}"):
+                self.assertRegex(help_text, rf"(?<![\w-]){option}(?![\w-])")
+
+    def test_every_verb_is_in_the_readme(self):
+        self.assertIn("demo", verbs())
+        for verb in verbs():
+            self.assertIn(f"./dev {verb}", tree.text("README.md"))
+
+    def test_verbs_exist(self):
+        found = list(commands("dev"))
+        self.assertTrue(found)
+        for path, words in found:
+            self.assertIn(words[0], verbs(), path)
+
+    def test_an_unknown_verb_is_an_error(self):
+        result = subprocess.run([tree.ROOT / "dev", "dance"], cwd="/",
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("no verb 'dance'", result.stderr)
+
+    def test_commands_of_marrow_exist(self):
+        found = list(commands("marrow"))
+        self.assertTrue(found)
+        for path, words in found:
+            command = [] if words[0].startswith("-") else words[:1]
+            text = run(f"{BIN}/marrow", *command, "--help")
+            self.check_options(path, text, words)
+
+    def test_commands_of_marrowd_exist(self):
+        found = list(commands("marrowd"))
+        self.assertTrue(found)
+        for path, words in found:
+            self.check_options(path, run(f"{BIN}/marrowd", "--help"), words)
+
+    def test_links_lead_to_files(self):
+        for path, text in documents():
+            for link in LINK.findall(text):
+                if "://" in link:
+                    continue
+                with self.subTest(f"{path}: {link}"):
+                    self.assertTrue((tree.ROOT / path.parent / link).exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
