@@ -13,7 +13,9 @@ constexpr int kTentacles = 8;
 constexpr uint32_t kJoints = 7;
 
 // No tentacle points straight ahead.
-double AngleOf(int tentacle) { return (tentacle + 0.5) * 2 * M_PI / kTentacles; }
+double AngleOf(int tentacle) {
+  return (tentacle + 0.5) * 2 * M_PI / kTentacles;
+}
 
 std::string NameOf(int tentacle) {
   return absl::StrCat("tentacle_", tentacle + 1);
@@ -50,21 +52,24 @@ void AddTentacle(int tentacle, Creature& creature) {
   struct Station {
     double out, up, radius;
   };
-  constexpr std::array<Station, kJoints + 1> kStations = {{{0.3, 0.17, 0.115},
-                                                           {0.54, 0.1, 0.104},
-                                                           {0.78, 0.07, 0.092},
-                                                           {1.03, 0.06, 0.08},
-                                                           {1.27, 0.06, 0.068},
-                                                           {1.5, 0.07, 0.057},
-                                                           {1.72, 0.09, 0.046},
-                                                           {1.92, 0.12, 0.036}}};
+  constexpr std::array<Station, kJoints + 1> kStations = {
+      {{0.3, 0.17, 0.115},
+       {0.54, 0.1, 0.104},
+       {0.78, 0.07, 0.092},
+       {1.03, 0.06, 0.08},
+       {1.27, 0.06, 0.068},
+       {1.5, 0.07, 0.057},
+       {1.72, 0.09, 0.046},
+       {1.92, 0.12, 0.036}}};
   std::vector<LimbNode> nodes;
   for (const Station& station : kStations) {
-    nodes.push_back({station.out * Outward(tentacle) +
-                         station.up * Vector3d::UnitY(),
-                     station.radius});
+    nodes.push_back(
+        {station.out * Outward(tentacle) + station.up * Vector3d::UnitY(),
+         station.radius});
   }
   AddLimb(NameOf(tentacle), nodes, 0.08, creature);
+  // A tentacle has no elbows: it bends all along.
+  for (CreatureJoint& joint : creature.joints) joint.width = 0.22;
 }
 
 CreaturePose Curl() {
@@ -73,7 +78,7 @@ CreaturePose Curl() {
     const double side = i % 2 == 0 ? 1 : -1;
     pose.turns.push_back({NameOf(i), 0, Lift(i, 8)});
     for (uint32_t joint = 2; joint < kJoints; ++joint) {
-      pose.turns.push_back({NameOf(i), joint, Lift(i, 22 + 5. * joint)});
+      pose.turns.push_back({NameOf(i), joint, Lift(i, 24 + 6. * joint)});
       pose.turns.push_back({NameOf(i), joint, Sweep(side * 7)});
     }
   }
@@ -84,8 +89,9 @@ CreaturePose Crawl() {
   CreaturePose pose{"crawl", {}};
   for (int i = 0; i < kTentacles; ++i) {
     for (uint32_t joint = 1; joint < kJoints; ++joint) {
-      const double phase = 1.1 * joint + 1.7 * i;
-      pose.turns.push_back({NameOf(i), joint, Sweep(34 * std::sin(phase))});
+      // All wind alike, so that neighbours stay clear of each other.
+      const double phase = 1.15 * joint + 0.3 * i;
+      pose.turns.push_back({NameOf(i), joint, Sweep(36 * std::sin(phase))});
     }
     pose.turns.push_back({NameOf(i), 0, Lift(i, i % 2 == 0 ? 6 : -3)});
   }
@@ -115,7 +121,7 @@ CreaturePose Reach() {
       const double lift = joint < 3 ? 19 : -12;
       pose.turns.push_back(
           {NameOf(i), joint,
-           in_front ? Lift(i, lift) : Sweep(side * (joint < 4 ? 6 : 22))});
+           in_front ? Lift(i, lift) : Sweep(side * (joint < 4 ? -4 : 20))});
     }
   }
   return pose;

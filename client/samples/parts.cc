@@ -13,8 +13,7 @@ using Neighbours = std::vector<std::array<uint32_t, 3>>;
 uint32_t NearestPart(const CreatureField& field, const Eigen::Vector3d& p) {
   const std::vector<double> distances = field.PartDistances(p);
   return static_cast<uint32_t>(
-      std::min_element(distances.begin(), distances.end()) -
-      distances.begin());
+      std::min_element(distances.begin(), distances.end()) - distances.begin());
 }
 
 // The face across each of a face's three edges.

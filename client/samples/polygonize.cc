@@ -146,18 +146,17 @@ class TetrahedronMarcher {
     const int high = std::max(c, d);
     const Lattice at = {cube_[0] + Bit(low, 0), cube_[1] + Bit(low, 1),
                         cube_[2] + Bit(low, 2)};
-    const int64_t corner =
-        (at[2] * (blocks_[1] * kBlock + 1) + at[1]) * (blocks_[0] * kBlock + 1) +
-        at[0];
+    const int64_t corner = (at[2] * (blocks_[1] * kBlock + 1) + at[1]) *
+                               (blocks_[0] * kBlock + 1) +
+                           at[0];
     const auto next_id = static_cast<uint32_t>(mesh_.positions.size());
     const auto [it, is_new] =
         vertex_of_edge_.try_emplace(corner * 8 + (high - low), next_id);
     if (is_new) {
       // Kept off the corners: no two vertices of a cube coincide.
-      const double share =
-          std::clamp(corner_values_[low] /
-                         (corner_values_[low] - corner_values_[high]),
-                     0.02, 0.98);
+      const double share = std::clamp(
+          corner_values_[low] / (corner_values_[low] - corner_values_[high]),
+          0.02, 0.98);
       Eigen::Vector3d step;
       for (int i = 0; i < 3; ++i) {
         step[i] = static_cast<double>(Bit(high, i) - Bit(low, i));

@@ -24,8 +24,8 @@ std::vector<double> Ownership(const Creature& creature,
     for (size_t j = 0; j < distances.size(); ++j) {
       if (j != i) others = std::min(others, distances[j]);
     }
-    result[i] = SmoothStep((others - distances[i]) /
-                           creature.parts[i].root_width);
+    result[i] =
+        SmoothStep((others - distances[i]) / creature.parts[i].root_width);
   }
   return result;
 }
@@ -62,8 +62,8 @@ std::vector<Eigen::Vector3d> TurnsOf(const Creature& creature,
       if (part.joint != joint.index) continue;
       if (part.part != creature.parts[joint.part].name) continue;
       const double radians = part.degrees.norm() * M_PI / 180;
-      turn = Eigen::Quaterniond(Eigen::AngleAxisd(
-                 radians, part.degrees.normalized())) *
+      turn = Eigen::Quaterniond(
+                 Eigen::AngleAxisd(radians, part.degrees.normalized())) *
              turn;
     }
     const Eigen::AngleAxisd whole(turn);

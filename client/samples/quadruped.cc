@@ -29,10 +29,8 @@ void AddHead(Creature& creature) {
   head.cones.push_back({{0, 1.51, 0.78}, {0, 1.49, 0.84}, 0.11, 0.095});
   head.cones.push_back({{0, 1.43, 0.86}, {0, 1.395, 0.98}, 0.07, 0.05});
   for (const double side : {-1., 1.}) {
-    head.cones.push_back({{side * 0.065, 1.58, 0.72},
-                          {side * 0.095, 1.73, 0.7},
-                          0.042,
-                          0.022});
+    head.cones.push_back(
+        {{side * 0.065, 1.58, 0.72}, {side * 0.095, 1.73, 0.7}, 0.042, 0.022});
   }
 }
 
@@ -94,11 +92,11 @@ CreaturePose Graze() {
   return pose;
 }
 
-CreaturePose Sit() {
-  CreaturePose pose{"sit", {}};
-  TurnBoth("hindleg", 0, {-46, 0, 0}, pose);
-  TurnBoth("hindleg", 1, {58, 0, 0}, pose);
-  TurnBoth("hindleg", 2, {-52, 0, 0}, pose);
+CreaturePose Crouch() {
+  CreaturePose pose{"crouch", {}};
+  TurnBoth("hindleg", 0, {-40, 0, 0}, pose);
+  TurnBoth("hindleg", 1, {46, 0, 0}, pose);
+  TurnBoth("hindleg", 2, {-40, 0, 0}, pose);
   TurnBoth("foreleg", 0, {40, 0, 0}, pose);
   pose.turns.push_back({"torso", 0, {-24, 0, 0}});
   pose.turns.push_back({"head", 0, {14, 0, 0}});
@@ -115,8 +113,11 @@ Creature MakeQuadruped() {
   creature.name = "quadruped";
   creature.description = "a four-legged animal with head and tail";
   creature.parts.push_back(Torso());
-  creature.joints.push_back(
-      {0, 0, {0, 1.0, -0.05}, Vector3d::UnitZ(), 0.25});  // the small of the back
+  creature.joints.push_back({0,
+                             0,
+                             {0, 1.0, -0.05},
+                             Vector3d::UnitZ(),
+                             0.25});  // the small of the back
   AddHead(creature);
   AddLegs(creature);
   AddLimb("tail",
@@ -125,7 +126,7 @@ Creature MakeQuadruped() {
            {{0, 0.92, -0.95}, 0.042},
            {{0, 0.78, -1.08}, 0.03}},
           0.05, creature);
-  creature.poses = {{"rest", {}}, Walk(), Gallop(), Graze(), Sit()};
+  creature.poses = {{"rest", {}}, Walk(), Gallop(), Graze(), Crouch()};
   return creature;
 }
 

@@ -100,9 +100,8 @@ class Collapser {
     std::set_intersection(of_u.begin(), of_u.end(), of_v.begin(), of_v.end(),
                           std::back_inserter(common));
     if (common.size() != 2) return false;
-    return std::all_of(common.begin(), common.end(), [&](uint32_t w) {
-      return faces_of_[w].size() > 3;
-    });
+    return std::all_of(common.begin(), common.end(),
+                       [&](uint32_t w) { return faces_of_[w].size() > 3; });
   }
 
   // Whether moving `v` to `target` folds a face that does not hold `other`.
@@ -160,8 +159,7 @@ class Collapser {
   std::vector<std::vector<uint32_t>> faces_of_;
   std::vector<uint32_t> version_;
   std::vector<double> size_;  // the length that an edge should be, up to scale
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>
-      queue_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
 };
 
 }  // namespace
@@ -171,9 +169,9 @@ absl::Status CollapseTo(uint32_t faces, const CreatureField& field,
   Collapser collapser(field, mesh);
   const size_t left = collapser.Run(faces);
   if (left != faces) {
-    return absl::InternalError(
-        absl::StrCat("the sample could be made with ", left,
-                     " faces, not with ", faces, "; ask for more faces"));
+    return absl::InternalError(absl::StrCat("the sample could be made with ",
+                                            left, " faces, not with ", faces,
+                                            "; ask for more faces"));
   }
   collapser.Compact();
   return absl::OkStatus();

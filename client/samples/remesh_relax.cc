@@ -60,9 +60,8 @@ class Flipper {
   }
 
   bool AreNeighbours(uint32_t u, uint32_t v) const {
-    return std::any_of(
-        faces_of_[u].begin(), faces_of_[u].end(),
-        [&](uint32_t g) { return Holds(mesh_.faces[g], v); });
+    return std::any_of(faces_of_[u].begin(), faces_of_[u].end(),
+                       [&](uint32_t g) { return Holds(mesh_.faces[g], v); });
   }
 
   // The faces f = (u, v, a) and g = (v, u, b) become (a, u, b) and (b, v, a)
@@ -93,9 +92,10 @@ class Flipper {
 
   bool FoldsByFlip(uint32_t f, uint32_t g, uint32_t u, uint32_t v, uint32_t a,
                    uint32_t b) const {
-    const Eigen::Vector3d before = (AreaVector(mesh_.positions, mesh_.faces[f]) +
-                                    AreaVector(mesh_.positions, mesh_.faces[g]))
-                                       .normalized();
+    const Eigen::Vector3d before =
+        (AreaVector(mesh_.positions, mesh_.faces[f]) +
+         AreaVector(mesh_.positions, mesh_.faces[g]))
+            .normalized();
     const Eigen::Vector3d one = AreaVector(mesh_.positions, {a, u, b});
     const Eigen::Vector3d two = AreaVector(mesh_.positions, {b, v, a});
     return one.dot(before) <= kLeastFlipCosine * one.norm() ||

@@ -50,8 +50,7 @@ std::string NamesOf(const std::vector<T>& items) {
 // The number of faces grows with the inverse square of the cell's side, so a
 // coarse trial tells which side gives how many.
 SurfaceMesh PolygonizeWithAtLeast(double faces, const CreatureField& field) {
-  const double trial =
-      field.bounds().diagonal().norm() / kTrialCellsAcross;
+  const double trial = field.bounds().diagonal().norm() / kTrialCellsAcross;
   const auto trial_faces =
       static_cast<double>(Polygonize(field, trial).faces.size());
   return Polygonize(field, trial * std::sqrt(trial_faces / faces));
@@ -69,9 +68,8 @@ absl::StatusOr<SurfaceMesh> MakeSkin(const CreatureField& field,
   return mesh;
 }
 
-PolygonMesh ToPolygonMesh(
-    const std::vector<Eigen::Vector3d>& positions,
-    const std::vector<std::array<uint32_t, 3>>& faces) {
+PolygonMesh ToPolygonMesh(const std::vector<Eigen::Vector3d>& positions,
+                          const std::vector<std::array<uint32_t, 3>>& faces) {
   PolygonMesh mesh;
   for (const Eigen::Vector3d& p : positions) {
     mesh.positions.push_back({static_cast<float>(p.x()),
@@ -104,9 +102,9 @@ absl::StatusOr<Sample> MakeSample(const std::string& name,
                                   const std::string& pose, uint32_t faces) {
   const Creature* creature = FindByName(Creatures(), name);
   if (creature == nullptr) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("there is no sample \"", name, "\"; choose one of ",
-                     NamesOf(Creatures())));
+    return absl::InvalidArgumentError(absl::StrCat("there is no sample \"",
+                                                   name, "\"; choose one of ",
+                                                   NamesOf(Creatures())));
   }
   const CreaturePose* stance =
       FindByName(creature->poses, pose.empty() ? "rest" : pose);
