@@ -140,8 +140,9 @@ Vector3d BroadSide(const Samples& samples, const Vector3d& up) {
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance)
           .eigenvectors()
           .col(0);
-  Vector3d side = least.x() * e1 + least.y() * e2;
-  const Vector3d front(0.01, 0.1, 1);
+  const Vector3d side = least.x() * e1 + least.y() * e2;
+  // A person who models with y up looks along -z; with z up, along y.
+  const Vector3d front(0.01, -0.1, 1);
   return side.dot(front) < 0 ? Vector3d(-side) : side;
 }
 
@@ -215,6 +216,11 @@ double Score(const Samples& samples, const std::vector<bool>& visible) {
   return score;
 }
 
+std::vector<bool> Either(std::vector<bool> a, const std::vector<bool>& b) {
+  for (size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
 }  // namespace
 
 std::vector<View> ChooseViews(const Surface& surface, int count) {
@@ -232,19 +238,14 @@ std::vector<View> ChooseViews(const Surface& surface, int count) {
     size_t best = 0;
     double best_score = -1;
     for (size_t c = 0; c < candidates.size(); ++c) {
-      std::vector<bool> both = shown;
-      for (size_t i = 0; i < both.size(); ++i) {
-        both[i] = both[i] || visible[c][i];
-      }
-      const double score = candidates[c].weight * Score(samples, both);
+      const double score =
+          candidates[c].weight * Score(samples, Either(shown, visible[c]));
       if (score > best_score) {
         best_score = score;
         best = c;
       }
     }
-    for (size_t i = 0; i < shown.size(); ++i) {
-      shown[i] = shown[i] || visible[best][i];
-    }
+    shown = Either(shown, visible[best]);
     views.push_back(candidates[best].view);
   }
   return views;
