@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -69,17 +70,64 @@ Samples MakeSamples(const Surface& surface) {
   return samples;
 }
 
+Vector3f Mean(const Samples& samples) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& p : samples.points) sum += p.cast<double>();
+  return (sum / std::max<size_t>(samples.points.size(), 1)).cast<float>();
+}
+
+// The least and greatest component of the samples along an axis.
+std::pair<float, float> Extent(const Samples& samples, const Vector3f& axis) {
+  std::pair<float, float> extent = {0, 0};
+  for (const Vector3f& p : samples.points) {
+    extent.first = std::min(extent.first, p.dot(axis));
+    extent.second = std::max(extent.second, p.dot(axis));
+  }
+  return extent;
+}
+
+// Would it stand? The centre of mass has to lie above what touches the floor:
+// in every horizontal direction, something there reaches as far out.
+bool Stands(const Samples& samples, const Vector3f& up) {
+  constexpr float kFloor = 0.05f;  // of the height
+  constexpr float kSlack = 0.02f;  // of the longest side, which is 2
+  const auto [bottom, top] = Extent(samples, up);
+  const Vector3f mean = Mean(samples);
+  const Vector3f e1 = up.unitOrthogonal();
+  const Vector3f e2 = up.cross(e1);
+  constexpr int kDirections = 16;
+  std::array<float, kDirections> reach;
+  reach.fill(-4);
+  for (const Vector3f& p : samples.points) {
+    if (p.dot(up) > bottom + kFloor * (top - bottom)) continue;
+    for (int i = 0; i < kDirections; ++i) {
+      const float angle = 2 * std::numbers::pi_v<float> * i / kDirections;
+      const Vector3f out = std::cos(angle) * e1 + std::sin(angle) * e2;
+      reach[i] = std::max(reach[i], (p - mean).dot(out));
+    }
+  }
+  return *std::min_element(reach.begin(), reach.end()) > -2 * kSlack;
+}
+
+// Files have y up or z up. The axis on which the creature would stand is up;
+// where it would on both (a person, who can also lie) or on neither, the one
+// along which it is longer, or y where that does not tell.
 Vector3d ChooseUp(const Samples& samples) {
-  (void)samples;
-  return Vector3d::UnitY();
+  const bool stands_y = Stands(samples, Vector3f::UnitY());
+  const bool stands_z = Stands(samples, Vector3f::UnitZ());
+  if (stands_y && !stands_z) return Vector3d::UnitY();
+  if (stands_z && !stands_y) return Vector3d::UnitZ();
+  if (!stands_y) return Vector3d::UnitY();
+  const auto [y_low, y_high] = Extent(samples, Vector3f::UnitY());
+  const auto [z_low, z_high] = Extent(samples, Vector3f::UnitZ());
+  const bool tall_z = z_high - z_low > 1.1f * (y_high - y_low);
+  return tall_z ? Vector3d::UnitZ() : Vector3d::UnitY();
 }
 
 // The horizontal direction in which the samples spread least: what faces it is
 // the broad side.
 Vector3d BroadSide(const Samples& samples, const Vector3d& up) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3f& p : samples.points) mean += p.cast<double>();
-  mean /= std::max<size_t>(samples.points.size(), 1);
+  const Vector3d mean = Mean(samples).cast<double>();
   const Vector3d e1 = up.unitOrthogonal();
   const Vector3d e2 = up.cross(e1);
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
@@ -92,8 +140,9 @@ Vector3d BroadSide(const Samples& samples, const Vector3d& up) {
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance)
           .eigenvectors()
           .col(0);
-  Vector3d side = least.x() * e1 + least.y() * e2;
-  const Vector3d front(0.01, 0.1, 1);
+  const Vector3d side = least.x() * e1 + least.y() * e2;
+  // A person who models with y up looks along -z; with z up, along y.
+  const Vector3d front(0.01, -0.1, 1);
   return side.dot(front) < 0 ? Vector3d(-side) : side;
 }
 
@@ -167,6 +216,11 @@ double Score(const Samples& samples, const std::vector<bool>& visible) {
   return score;
 }
 
+std::vector<bool> Either(std::vector<bool> a, const std::vector<bool>& b) {
+  for (size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
 }  // namespace
 
 std::vector<View> ChooseViews(const Surface& surface, int count) {
@@ -184,19 +238,14 @@ std::vector<View> ChooseViews(const Surface& surface, int count) {
     size_t best = 0;
     double best_score = -1;
     for (size_t c = 0; c < candidates.size(); ++c) {
-      std::vector<bool> both = shown;
-      for (size_t i = 0; i < both.size(); ++i) {
-        both[i] = both[i] || visible[c][i];
-      }
-      const double score = candidates[c].weight * Score(samples, both);
+      const double score =
+          candidates[c].weight * Score(samples, Either(shown, visible[c]));
       if (score > best_score) {
         best_score = score;
         best = c;
       }
     }
-    for (size_t i = 0; i < shown.size(); ++i) {
-      shown[i] = shown[i] || visible[best][i];
-    }
+    shown = Either(shown, visible[best]);
     views.push_back(candidates[best].view);
   }
   return views;

@@ -48,6 +48,11 @@ std::pair<float, float> Columns(const Stroke& stroke, float y, float reach) {
   return {low - reach, high + reach};
 }
 
+// Neither infinite nor so far out that its distances would be.
+bool IsDrawable(const Vector2f& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() < 1e6f;
+}
+
 int ToPixel(float x, int size) {
   return static_cast<int>(std::clamp(x, 0.0f, size - 1.0f));
 }
@@ -91,16 +96,16 @@ void DrawSkeleton(const client::Skeleton& skeleton,
     for (size_t j = 0; j < joints.size(); ++j) {
       const uint32_t parent = joints[j].parent;
       if (parent >= joints.size()) continue;
-      if (!positions[j].allFinite() || !positions[parent].allFinite()) continue;
+      if (!IsDrawable(positions[j]) || !IsDrawable(positions[parent])) continue;
       Draw({positions[parent], positions[j], radius}, color, image);
     }
   };
-  draw_bones(0.5f * unit + 0.5f * unit, kOutline);
+  draw_bones(unit, kOutline);
   draw_bones(0.5f * unit, kBone);
   for (const bool articulation : {true, false}) {
     for (size_t j = 0; j < joints.size(); ++j) {
       if (joints[j].articulation != articulation) continue;
-      if (!positions[j].allFinite()) continue;
+      if (!IsDrawable(positions[j])) continue;
       DrawJoint(joints[j], positions[j], unit, image);
     }
   }

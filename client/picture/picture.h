@@ -25,8 +25,8 @@ struct PictureOptions {
 // The views are chosen so that much of every segment is seen; surface.h and
 // camera.h say how. Faces with a corner that is not finite, and joints whose
 // position is not, are left out; a mesh without a face to draw gives an empty
-// picture. The same input gives the same bytes. Thread-safe. Takes about
-// 50 bytes a sample of the picture, of which there are four a pixel.
+// picture. The same input gives the same bytes. Thread-safe. Takes about 60
+// bytes of memory a pixel and 100 a face.
 //
 // InvalidArgument unless there is one label a face and the options are in
 // their ranges.

@@ -23,6 +23,24 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr int kTaps = 20;
+constexpr int kTurns = 16;
+
+// Spirals of unit radius, one turned a little further than the next.
+using Spiral = std::array<Vector2f, kTaps>;
+
+std::array<Spiral, kTurns> MakeSpirals() {
+  constexpr float kTurnATap = 0.6737f;
+  std::array<Spiral, kTurns> spirals;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (int i = 0; i < kTaps; ++i) {
+      const float angle = 2 * std::numbers::pi_v<float> *
+                          (static_cast<float>(turn) / kTurns + i * kTurnATap);
+      spirals[turn][i] =
+          (i + 0.5f) / kTaps * Vector2f(std::cos(angle), std::sin(angle));
+    }
+  }
+  return spirals;
+}
 
 class Shader {
  public:
@@ -36,17 +54,24 @@ class Shader {
   Vector3f NormalAt(int x, int y) const;
   float Openness(int x, int y) const;
   void ComputeOpenness();
-  float LineStrength(int x, int y) const;
-  uint32_t LabelAt(size_t at) const {
-    return surface_.labels[buffer_.triangle[at]];
+  float Blurred(const std::vector<float>& values, int x, int y) const;
+  // Of the pixel's first sample; minus infinity where it sees nothing.
+  float PixelDepth(int x, int y) const {
+    return buffer_.depth[buffer_.At(x * kSupersampling, y * kSupersampling)];
   }
+  float LineStrength(int x, int y) const;
+  void ComputeSegments();
 
   const Surface& surface_;
   const View& view_;
   const std::vector<Vector3f>& points_;
   const DepthBuffer& buffer_;
-  const float size_;  // of the picture's shorter side, in samples
-  std::map<uint32_t, Color> colors_;
+  const int width_;                 // pixels
+  const int height_;                // pixels
+  const float size_;                // of the picture's shorter side, in samples
+  std::vector<Color> colors_;       // a segment
+  std::vector<uint32_t> segments_;  // a sample: into colors_, or kNoTriangle
+  const std::array<Spiral, kTurns> spirals_ = MakeSpirals();
   std::vector<float> openness_;  // a pixel
 };
 
@@ -56,12 +81,26 @@ Shader::Shader(const Surface& surface, const View& view,
       view_(view),
       points_(points),
       buffer_(buffer),
+      width_(buffer.width / kSupersampling),
+      height_(buffer.height / kSupersampling),
       size_(static_cast<float>(std::min(buffer.width, buffer.height))) {
-  for (uint32_t label : surface.labels) {
-    const auto [it, inserted] = colors_.try_emplace(label);
-    if (inserted) it->second = ToLinear(SegmentColor(label));
-  }
+  ComputeSegments();
   ComputeOpenness();
+}
+
+void Shader::ComputeSegments() {
+  std::map<uint32_t, uint32_t> numbers;
+  std::vector<uint32_t> triangle_segments;
+  for (uint32_t label : surface_.labels) {
+    const auto next = static_cast<uint32_t>(colors_.size());
+    const auto [it, inserted] = numbers.try_emplace(label, next);
+    if (inserted) colors_.push_back(ToLinear(SegmentColor(label)));
+    triangle_segments.push_back(it->second);
+  }
+  segments_.reserve(buffer_.triangle.size());
+  for (uint32_t t : buffer_.triangle) {
+    segments_.push_back(t == kNoTriangle ? kNoTriangle : triangle_segments[t]);
+  }
 }
 
 // The normal in the view's axes, turned to the viewer.
@@ -73,8 +112,11 @@ Vector3f Shader::NormalAt(int x, int y) const {
   const Vector3f v = points_[corners[2]] - a;
   const Vector2f d = Vector2f(x + 0.5f, y + 0.5f) - a.head<2>();
   const float area = u.x() * v.y() - u.y() * v.x();
-  const float s = std::clamp((d.x() * v.y() - d.y() * v.x()) / area, 0.f, 1.f);
-  const float r = std::clamp((u.x() * d.y() - u.y() * d.x()) / area, 0.f, 1.f);
+  const float inverse = area != 0 ? 1 / area : 0;
+  const float s =
+      std::clamp((d.x() * v.y() - d.y() * v.x()) * inverse, 0.0f, 1.0f);
+  const float r =
+      std::clamp((u.x() * d.y() - u.y() * d.x()) * inverse, 0.0f, 1.0f);
   // In samples y points down, so that cross products are mirrored.
   Vector3f flat = u.cross(v);
   flat = Vector3f(-flat.x(), flat.y(), -flat.z()).stableNormalized();
@@ -91,19 +133,15 @@ float Shader::Openness(int x, int y) const {
   const float radius = 0.09f * size_;
   const size_t at = buffer_.At(x, y);
   const Vector3f normal = NormalAt(x, y);
-  // Turning the taps from pixel to pixel makes fine noise out of bands, and the
-  // blur takes that away.
-  const float turn = std::fmod(
-      0.7548777f * x / kSupersampling + 0.5698403f * y / kSupersampling, 1.0f);
+  // Another turn at each pixel of a block of 4 x 4 makes fine noise out of
+  // bands, and the blur takes that away.
+  const int column = x / kSupersampling % 4;
+  const int row = y / kSupersampling % 4;
+  const Spiral& spiral = spirals_[(column * 4 + row) * 7 % kTurns];
   float occlusion = 0;
-  for (int i = 0; i < kTaps; ++i) {
-    const float distance = radius * (i + 0.5f) / kTaps;
-    const float angle =
-        2 * std::numbers::pi_v<float> * (turn + i * 0.381966f * 7);
-    const float dx = distance * std::cos(angle);
-    const float dy = distance * std::sin(angle);
-    const int px = x + static_cast<int>(std::lround(dx));
-    const int py = y + static_cast<int>(std::lround(dy));
+  for (const Vector2f& offset : spiral) {
+    const int px = x + static_cast<int>(radius * offset.x());
+    const int py = y + static_cast<int>(radius * offset.y());
     if (px < 0 || py < 0 || px >= buffer_.width || py >= buffer_.height) {
       continue;
     }
@@ -119,38 +157,40 @@ float Shader::Openness(int x, int y) const {
 }
 
 void Shader::ComputeOpenness() {
-  const int width = buffer_.width / kSupersampling;
-  const int height = buffer_.height / kSupersampling;
-  std::vector<float> raw(static_cast<size_t>(width) * height, 1);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int sx = x * kSupersampling;
-      const int sy = y * kSupersampling;
-      if (buffer_.triangle[buffer_.At(sx, sy)] == kNoTriangle) continue;
-      raw[size_t(y) * width + x] = Openness(sx, sy);
+  openness_.assign(static_cast<size_t>(width_) * height_, 1);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!std::isfinite(PixelDepth(x, y))) continue;
+      openness_[size_t(y) * width_ + x] =
+          Openness(x * kSupersampling, y * kSupersampling);
     }
   }
-  const auto depth = [this](int x, int y) {
-    return buffer_.depth[buffer_.At(x * kSupersampling, y * kSupersampling)];
-  };
-  openness_ = raw;
-  constexpr int kBlur = 3;
-  for (int y = kBlur; y < height - kBlur; ++y) {
-    for (int x = kBlur; x < width - kBlur; ++x) {
-      if (!std::isfinite(depth(x, y))) continue;
-      float sum = 0;
-      float weight = 0;
-      for (int dy = -kBlur; dy <= kBlur; ++dy) {
-        for (int dx = -kBlur; dx <= kBlur; ++dx) {
-          if (!(std::abs(depth(x + dx, y + dy) - depth(x, y)) < 0.02f * size_))
-            continue;
-          sum += raw[size_t(y + dy) * width + x + dx];
-          weight += 1;
-        }
-      }
-      openness_[size_t(y) * width + x] = sum / weight;
+  const std::vector<float> raw = openness_;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!std::isfinite(PixelDepth(x, y))) continue;
+      openness_[size_t(y) * width_ + x] = Blurred(raw, x, y);
     }
   }
+}
+
+// The mean over the pixels around that lie at about the same depth.
+float Shader::Blurred(const std::vector<float>& values, int x, int y) const {
+  constexpr int kReach = 3;
+  const float depth = PixelDepth(x, y);
+  const float near = 0.02f * size_;
+  float sum = 0;
+  int count = 0;
+  for (int py = std::max(y - kReach, 0);
+       py <= std::min(y + kReach, height_ - 1); ++py) {
+    for (int px = std::max(x - kReach, 0);
+         px <= std::min(x + kReach, width_ - 1); ++px) {
+      if (!(std::abs(PixelDepth(px, py) - depth) < near)) continue;
+      sum += values[size_t(py) * width_ + px];
+      ++count;
+    }
+  }
+  return sum / static_cast<float>(std::max(count, 1));
 }
 
 // 1 on a boundary between segments, less on an outline.
@@ -178,7 +218,7 @@ float Shader::LineStrength(int x, int y) const {
     const size_t other = buffer_.At(px, py);
     if (buffer_.triangle[other] == kNoTriangle) {
       strength = std::max(strength, 0.45f);
-    } else if (LabelAt(other) != LabelAt(at)) {
+    } else if (segments_[other] != segments_[at]) {
       return 1;
     } else if (buffer_.depth[other] - buffer_.depth[at] > 0.05f * size_) {
       strength = std::max(strength, 0.6f);
@@ -197,14 +237,15 @@ Color Light(const Color& base, const Vector3f& n, float openness) {
   const float wrapped = std::max((n.dot(kKey) + 0.2f) / 1.2f, 0.0f);
   const Color key =
       wrapped * (0.4f + 0.6f * openness) * Color(0.78f, 0.75f, 0.70f);
-  const float shine =
-      0.10f * std::pow(std::max(n.dot(kHalf), 0.0f), 24.0f) * openness;
+  const float glance = std::max(n.dot(kHalf), 0.0f);
+  const float glance4 = glance * glance * glance * glance;
+  const float glance8 = glance4 * glance4;
+  const float shine = 0.10f * glance8 * glance8 * glance8 * openness;
   return base.cwiseProduct(ambient + key) + Color::Constant(shine);
 }
 
 std::pair<Color, float> Shader::Pixel(int x, int y) const {
-  const float openness =
-      openness_[size_t(y) * (buffer_.width / kSupersampling) + x];
+  const float openness = openness_[size_t(y) * width_ + x];
   Color sum = Color::Zero();
   int covered = 0;
   for (int i = 0; i < kSupersampling * kSupersampling; ++i) {
@@ -212,7 +253,7 @@ std::pair<Color, float> Shader::Pixel(int x, int y) const {
     const int sy = y * kSupersampling + i / kSupersampling;
     const size_t at = buffer_.At(sx, sy);
     if (buffer_.triangle[at] == kNoTriangle) continue;
-    const Color& base = colors_.find(LabelAt(at))->second;
+    const Color& base = colors_[segments_[at]];
     sum += Light(base, NormalAt(sx, sy), openness) *
            (1 - 0.85f * LineStrength(sx, sy));
     ++covered;
