@@ -20,12 +20,14 @@ SERVICE_HEADERS = (
     "marrow/v1/", "sw/redis", "sys/socket.h", "netinet/",
 )
 
-# The folders of core that a folder outside of it may include.
+# The folders of core that a folder may include; the longest match counts.
 CORE_OF = {
     "core": CORE,
     "server": CORE,
-    # Status macros and digests: no geometry, no computation.
+    # Status macros, digests, checksums: no geometry.
     "client": ("base",),
+    # A .drc file from a stranger is read behind core's checks.
+    "client/encoder": ("base", "mesh"),
 }
 
 # Other top-level folders that each may include.
@@ -55,6 +57,12 @@ def sources(root):
                 yield path.relative_to(root), path.read_text("utf-8")
 
 
+def rooms(path):
+    """The folders of core that a file may include."""
+    return CORE_OF[max((folder for folder in CORE_OF
+                        if path.is_relative_to(folder)), key=len)]
+
+
 def folder_violation(path, included):
     """What is wrong with the including of one header, or None."""
     top, first = path.parts[0], included.split("/")[0]
@@ -69,7 +77,7 @@ def folder_violation(path, included):
     room = included.split("/")[1]
     if room not in CORE:
         return f"core/{room} is not a folder of core"
-    if room not in CORE_OF[top]:
+    if room not in rooms(path):
         return f"{top} must not include core/{room}"
     if top == "core" and CORE.index(room) > CORE.index(path.parts[1]):
         return f"core/{path.parts[1]} stands before core/{room}"

@@ -21,7 +21,8 @@ class IncludeDirectionsTest(unittest.TestCase):
                    '"core/pipeline/pipeline.h"', '"marrow/v1/mesh.pb.h"',
                    body="return grpc::Status(grpc::StatusCode::OK, text);")
         self.write("server/server.cc", '"server/server.h"')
-        self.write("client/encoder/encode.cc", '"draco/mesh/mesh.h"')
+        self.write("client/encoder/encode.cc", '"draco/mesh/mesh.h"',
+                   '"core/mesh/decode.h"')
         self.write("client/command/embedded.cc", '"server/server.h"')
 
     def write(self, name, *includes, body=""):
