@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/base/error_reason.h"
 #include "core/mesh/canonical_mesh.h"
@@ -176,12 +177,24 @@ TEST(DecodeTest, TrailingBytesAreIgnored) {
   EXPECT_TRUE(DecodeDraco(bytes, {}).ok());
 }
 
-TEST(DecodeTest, SurvivesTruncationAtEveryByte) {
+// Both methods, and of edgebreaker the valence and the standard traversal.
+std::vector<EncodeOptions> SeamOptions() {
+  std::vector<EncodeOptions> all;
   for (bool edgebreaker : {false, true}) {
-    EncodeOptions options;
-    options.edgebreaker = edgebreaker;
-    options.seams = true;
-    options.speed = edgebreaker ? 0 : 5;
+    for (int speed : {0, 5, 10}) {
+      for (int bits : {0, 11}) {
+        all.push_back({.edgebreaker = edgebreaker,
+                       .speed = speed,
+                       .seams = true,
+                       .quantization_bits = bits});
+      }
+    }
+  }
+  return all;
+}
+
+TEST(DecodeTest, SurvivesTruncationAtEveryByte) {
+  for (const EncodeOptions& options : SeamOptions()) {
     const std::string bytes = EncodeDraco(Torus(4, 4), options);
     for (size_t size = 0; size < bytes.size(); ++size) {
       ExpectAnswer(bytes.substr(0, size), {});
@@ -194,11 +207,7 @@ TEST(DecodeTest, SurvivesTruncationAtEveryByte) {
 TEST(DecodeTest, SurvivesEveryFlippedBit) {
   MeshLimits limits;
   limits.max_faces = limits.max_vertices = 10'000;
-  for (bool edgebreaker : {false, true}) {
-    EncodeOptions options;
-    options.edgebreaker = edgebreaker;
-    options.seams = true;
-    options.speed = edgebreaker ? 0 : 5;
+  for (const EncodeOptions& options : SeamOptions()) {
     const std::string good = EncodeDraco(Torus(4, 4), options);
     for (size_t bit = 0; bit < 8 * good.size(); ++bit) {
       std::string bytes = good;
