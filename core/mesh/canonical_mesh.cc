@@ -230,8 +230,10 @@ uint64_t CountUnusedPoints(const DecodedMesh& decoded) {
 }
 
 absl::Status CheckSize(const MeshReport& report) {
-  if (!(report.box_max - report.box_min).allFinite() ||
-      !std::isfinite(report.area)) {
+  // Of the squared extent: far below what rounding leaves of any surface.
+  constexpr double kLeastArea = 1e-30;
+  const double extent = (report.box_max - report.box_min).maxCoeff();
+  if (!std::isfinite(extent) || !std::isfinite(report.area)) {
     return Rejected(
         "the mesh is so large that its extent or area overflows; scale it "
         "down");
@@ -244,6 +246,11 @@ absl::Status CheckSize(const MeshReport& report) {
   if (report.area == 0) {
     return Rejected(
         "the mesh is so small that its area underflows to zero; scale it up");
+  }
+  if (report.area / extent / extent < kLeastArea) {
+    return Rejected(
+        "the area of the mesh is as good as zero against its extent: all "
+        "faces are needles; check the units of its coordinates");
   }
   return absl::OkStatus();
 }

@@ -35,7 +35,8 @@ struct CanonicalMesh {
 };
 
 // Errors: INVALID_ARGUMENT with reason MESH_REJECTED where no face is left or
-// the area is zero or not finite; the message says which. REQUIRES: positions
+// the area is zero, not finite, or under 1e-30 of the squared extent; the
+// message says which. REQUIRES: positions
 // are finite and face indices are points. Deterministic; time O(n log n).
 // Thread safe.
 absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded);

@@ -96,7 +96,7 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
     const Vector3d a = mesh.Position(face[0]) * scale;
     const Vector3d b = mesh.Position(face[1]) * scale;
     const Vector3d c = mesh.Position(face[2]) * scale;
-    const double cross = (b - a).cross(c - a).norm();
+    const double cross = (b - a).cross(c - a).stableNorm();
     const double reach =
         std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
     if (cross <= kDoubt * reach && Collinear(a, b, c)) {

@@ -1,0 +1,235 @@
+#include "core/mesh/canonical_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/base/error_reason.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/core/mesh/draco_fixture.h"
+
+namespace marrow {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+DecodedMesh MeshOf(const std::vector<std::array<double, 3>>& points,
+                   std::vector<Triangle> faces) {
+  DecodedMesh mesh;
+  mesh.positions.resize(points.size(), 3);
+  for (size_t p = 0; p < points.size(); ++p) {
+    mesh.positions.row(p) << points[p][0], points[p][1], points[p][2];
+  }
+  mesh.faces = std::move(faces);
+  return mesh;
+}
+
+CanonicalMesh Canonical(const DecodedMesh& decoded) {
+  auto canonical = Canonicalize(decoded);
+  EXPECT_TRUE(canonical.ok()) << canonical.status();
+  return canonical.ok() ? *std::move(canonical) : CanonicalMesh();
+}
+
+void ExpectRejected(const DecodedMesh& decoded, const std::string& text) {
+  const absl::Status status = Canonicalize(decoded).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(ReasonOf(status), kReasonMeshRejected);
+  EXPECT_THAT(std::string(status.message()), HasSubstr(text));
+}
+
+// The same surface with other numbers: points and faces shuffled, corners
+// rotated, and every third point split in two.
+DecodedMesh Renumbered(const DecodedMesh& mesh, uint32_t seed) {
+  std::mt19937 random(seed);
+  const uint32_t points = mesh.positions.rows();
+  std::vector<uint32_t> sources(points);
+  std::iota(sources.begin(), sources.end(), 0);
+  for (uint32_t p = 0; p < points; p += 3) sources.push_back(p);
+  std::shuffle(sources.begin(), sources.end(), random);
+  std::vector<std::vector<uint32_t>> copies(points);
+  DecodedMesh result;
+  result.positions.resize(sources.size(), 3);
+  for (uint32_t p = 0; p < sources.size(); ++p) {
+    copies[sources[p]].push_back(p);
+    result.positions.row(p) = mesh.positions.row(sources[p]);
+  }
+  for (Triangle face : mesh.faces) {
+    for (uint32_t& v : face) v = copies[v][random() % copies[v].size()];
+    std::rotate(face.begin(), face.begin() + random() % 3, face.end());
+    result.faces.push_back(face);
+  }
+  std::shuffle(result.faces.begin(), result.faces.end(), random);
+  return result;
+}
+
+std::array<uint32_t, 3> Sorted(Triangle face) {
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
+void ExpectMapsAreRight(const DecodedMesh& decoded, const CanonicalMesh& c) {
+  ASSERT_EQ(c.point_map.size(), decoded.positions.rows());
+  for (uint32_t p = 0; p < c.point_map.size(); ++p) {
+    if (c.point_map[p] == kNoIndex) continue;
+    EXPECT_EQ(c.mesh.positions.row(c.point_map[p]), decoded.positions.row(p));
+  }
+  ASSERT_EQ(c.face_map.size(), decoded.faces.size());
+  for (uint32_t f = 0; f < c.face_map.size(); ++f) {
+    ASSERT_LT(c.face_map[f], c.mesh.NumFaces());
+    Triangle face = decoded.faces[f];
+    for (uint32_t& v : face) v = c.point_map[v];
+    face = Sorted(face);
+    if (face[0] == face[1] || face[1] == face[2]) continue;
+    EXPECT_EQ(Sorted(c.mesh.faces[c.face_map[f]]), face);
+  }
+}
+
+// A torus with a flipped twin of every fifth face and a degenerate face on
+// every seventh.
+DecodedMesh DirtyTorus() {
+  DecodedMesh mesh = Torus(9, 11);
+  const std::vector<Triangle> clean = mesh.faces;
+  for (size_t f = 0; f < clean.size(); f += 5) {
+    mesh.faces.push_back({clean[f][0], clean[f][2], clean[f][1]});
+  }
+  for (size_t f = 0; f < clean.size(); f += 7) {
+    mesh.faces.push_back({clean[f][0], clean[f][1], clean[f][1]});
+  }
+  return mesh;
+}
+
+TEST(CanonicalMeshTest, IsSortedAndRotated) {
+  const CanonicalMesh c = Canonical(Renumbered(Torus(9, 11), 1));
+  ASSERT_EQ(c.mesh.NumVertices(), 99u);
+  ASSERT_EQ(c.mesh.NumFaces(), 198u);
+  for (uint32_t v = 1; v < c.mesh.NumVertices(); ++v) {
+    const auto a = c.mesh.Position(v - 1), b = c.mesh.Position(v);
+    EXPECT_TRUE(
+        std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()));
+  }
+  for (const Triangle& face : c.mesh.faces) {
+    EXPECT_EQ(face[0], std::min({face[0], face[1], face[2]}));
+  }
+  EXPECT_TRUE(std::is_sorted(c.mesh.faces.begin(), c.mesh.faces.end()));
+}
+
+TEST(CanonicalMeshTest, NumberingCannotMatter) {
+  const DecodedMesh dirty = DirtyTorus();
+  const CanonicalMesh expected = Canonical(dirty);
+  ExpectMapsAreRight(dirty, expected);
+  EXPECT_EQ(expected.report.duplicate_faces, 40u);
+  EXPECT_EQ(expected.report.degenerate_faces, 29u);
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    const DecodedMesh other = Renumbered(dirty, seed);
+    const CanonicalMesh actual = Canonical(other);
+    EXPECT_EQ(actual.mesh.positions, expected.mesh.positions);
+    EXPECT_EQ(actual.mesh.faces, expected.mesh.faces);
+    EXPECT_EQ(actual.geometry_digest, expected.geometry_digest);
+    EXPECT_EQ(actual.report.area, expected.report.area);
+    EXPECT_EQ(actual.report.welded_points, 33u);
+    ExpectMapsAreRight(other, actual);
+  }
+}
+
+TEST(CanonicalMeshTest, KeepsOrientation) {
+  const auto c =
+      Canonical(MeshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{1, 2, 0}}));
+  // In canonical order the points are (0,0,0), (0,1,0), (1,0,0).
+  EXPECT_THAT(c.mesh.faces, ElementsAre(Triangle{0, 2, 1}));
+  EXPECT_THAT(c.point_map, ElementsAre(0, 2, 1));
+}
+
+TEST(CanonicalMeshTest, DigestSeesGeometryAlone) {
+  const DecodedMesh mesh = Torus(5, 6);
+  const Digest digest = Canonical(mesh).geometry_digest;
+  DecodedMesh moved = mesh;
+  moved.positions(7, 1) = std::nextafter(moved.positions(7, 1), 100.0);
+  EXPECT_NE(Canonical(moved).geometry_digest, digest);
+  DecodedMesh flipped = mesh;
+  std::swap(flipped.faces[3][0], flipped.faces[3][1]);
+  EXPECT_NE(Canonical(flipped).geometry_digest, digest);
+  DecodedMesh open = mesh;
+  open.faces.pop_back();
+  EXPECT_NE(Canonical(open).geometry_digest, digest);
+}
+
+TEST(CanonicalMeshTest, MinusZeroIsZero) {
+  const auto plus =
+      Canonical(MeshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}));
+  const auto minus = Canonical(MeshOf(
+      {{-0.0, 0, 0}, {1, -0.0, -0.0}, {0, 1, 0}, {0, -0.0, 0}}, {{0, 1, 2}}));
+  EXPECT_EQ(minus.geometry_digest, plus.geometry_digest);
+  EXPECT_EQ(minus.report.welded_points, 1u);
+  EXPECT_EQ(minus.report.unused_points, 1u);
+  EXPECT_EQ(minus.point_map[3], minus.point_map[0]);
+}
+
+TEST(CanonicalMeshTest, PointsWithoutFacesHaveNoVertex) {
+  const auto c = Canonical(MeshOf(
+      {{5, 5, 5}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-5, 0, 0}}, {{1, 2, 3}}));
+  EXPECT_EQ(c.report.vertices, 3u);
+  EXPECT_EQ(c.report.unused_points, 2u);
+  EXPECT_THAT(c.point_map, ElementsAre(kNoIndex, 0, 2, 1, kNoIndex));
+}
+
+TEST(CanonicalMeshTest, DegenerateFacesFollowANeighbour) {
+  // Two triangles far apart; canonical faces 0 (near 0) and 1 (near 10).
+  const DecodedMesh mesh = MeshOf({{0, 0, 0},
+                                   {1, 0, 0},
+                                   {0, 1, 0},
+                                   {10, 0, 0},
+                                   {11, 0, 0},
+                                   {10, 1, 0},
+                                   {9, 9, 9},
+                                   {1, 5, 0},
+                                   {-4, 0, 0}},
+                                  {{3, 4, 5},
+                                   {0, 1, 2},
+                                   {4, 5, 5},    // on an edge of face 1
+                                   {6, 3, 6},    // touches a corner of face 1
+                                   {7, 7, 7},    // alone, nearer to face 0
+                                   {6, 6, 6},    // alone, nearer to face 1
+                                   {8, 8, 8}});  // before every vertex
+  const auto c = Canonical(mesh);
+  EXPECT_EQ(c.report.degenerate_faces, 5u);
+  EXPECT_THAT(c.face_map, ElementsAre(1, 0, 1, 1, 0, 1, 0));
+  EXPECT_EQ(c.point_map[6], kNoIndex);
+}
+
+TEST(CanonicalMeshTest, RejectsWhatHasNoSurface) {
+  ExpectRejected(MeshOf({{0, 0, 0}}, {}), "no faces");
+  ExpectRejected(MeshOf({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}),
+                 "all 1 faces are degenerate");
+  ExpectRejected(MeshOf({{1, 2, 3}, {2, 4, 6}, {3, 6, 9}}, {{0, 1, 2}}),
+                 "the area of the mesh is zero");
+  const DecodedMesh huge =
+      MeshOf({{-1e308, 0, 0}, {1e308, 0, 0}, {0, 1e308, 0}}, {{0, 1, 2}});
+  ExpectRejected(huge, "overflows");
+  ExpectRejected(MeshOf({{0, 0, 0}, {1e200, 0, 0}, {0, 1e200, 0}}, {{0, 1, 2}}),
+                 "overflows");
+  ExpectRejected(
+      MeshOf({{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}}, {{0, 1, 2}}),
+      "underflows");
+  ExpectRejected(MeshOf({{0, 0, 0}, {1e300, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}),
+                 "as good as zero");
+}
+
+TEST(CanonicalMeshTest, AreaAtEveryScale) {
+  const double unit = Canonical(Torus(16, 16)).report.area;
+  EXPECT_NEAR(unit, 4 * M_PI * M_PI * 3, 0.05 * unit);
+  for (double scale : {1e-100, 1e-20, 1e20, 1e100}) {
+    DecodedMesh mesh = Torus(16, 16);
+    mesh.positions *= scale;
+    const double area = Canonical(mesh).report.area;
+    EXPECT_NEAR(area / scale / scale, unit, 1e-12 * unit) << scale;
+  }
+}
+
+}  // namespace
+}  // namespace marrow
