@@ -104,7 +104,7 @@ absl::Status RunDecoder(std::string_view bytes, DracoMethod method,
   return RunDecoder<draco::MeshEdgebreakerDecoder>(bytes, method, limits, mesh);
 }
 
-// The attribute's values are `values` rows of three Scalars.
+// REQUIRES: every value of the attribute is three Scalars, all in its buffer.
 template <typename Scalar>
 absl::Status CopyPositions(const draco::PointAttribute& attribute,
                            Positions& positions) {
