@@ -26,8 +26,7 @@ std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
   const uint32_t available = pairs.NumPairs() - 1;
   const auto& lambda = pairs.eigenvalues;
   uint32_t dimension = 0;
-  while (dimension < available &&
-         std::exp(-lambda[dimension + 1] * t) > delta)
+  while (dimension < available && std::exp(-lambda[dimension + 1] * t) > delta)
     ++dimension;
   dimension = std::max(dimension, 1u);
   while (dimension < available &&
@@ -58,8 +57,8 @@ AverageDistance::AverageDistance(const DiffusionMap& Phi, const FaceSet& set)
     for (int i = 0; i < 3; ++i) {
       const auto row = Phi.row(set.triangles[f][i]);
       mean_ += set.areas[f] / 3 * row;
-      products += row.squaredNorm() +
-                  row.dot(Phi.row(set.triangles[f][(i + 1) % 3]));
+      products +=
+          row.squaredNorm() + row.dot(Phi.row(set.triangles[f][(i + 1) % 3]));
     }
     Q_ += set.areas[f] * products;
     area += set.areas[f];
@@ -73,9 +72,7 @@ double AverageDistance::At(uint32_t v) const {
   return row.squaredNorm() - 2 * row.dot(mean_) + Q_;
 }
 
-double AverageDistance::Mean() const {
-  return 2 * (Q_ - mean_.squaredNorm());
-}
+double AverageDistance::Mean() const { return 2 * (Q_ - mean_.squaredNorm()); }
 
 double MeanDistance(const DiffusionMap& Phi, const FaceSet& set,
                     std::span<const double> distance) {

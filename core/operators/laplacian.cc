@@ -16,8 +16,7 @@ using EdgeLengths = std::vector<std::array<double, 3>>;
 // 1e20 or 1e-20 neither overflow nor vanish.
 EdgeLengths MeasureEdges(const TriangleMesh& mesh) {
   const Eigen::RowVector3d low = mesh.positions.colwise().minCoeff();
-  const double extent =
-      (mesh.positions.colwise().maxCoeff() - low).maxCoeff();
+  const double extent = (mesh.positions.colwise().maxCoeff() - low).maxCoeff();
   auto unit = [&](uint32_t v) -> Eigen::RowVector3d {
     return (mesh.positions.row(v) - low) / extent;
   };

@@ -20,23 +20,22 @@ std::vector<uint32_t> CornersOf(const Region& region,
     vertices.insert(vertices.end(), region.triangles()[f].begin(),
                     region.triangles()[f].end());
   std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()),
-                 vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
 }
 
 }  // namespace
 
-std::vector<uint32_t> ComputeMedialStructure(
-    const Region& region, const DiffusionMap& Phi,
-    std::span<const uint32_t> members, double epsilon) {
+std::vector<uint32_t> ComputeMedialStructure(const Region& region,
+                                             const DiffusionMap& Phi,
+                                             std::span<const uint32_t> members,
+                                             double epsilon) {
   std::vector<uint32_t> vertices = CornersOf(region, members);
   double area = 0;
   for (uint32_t f : members) area += region.areas()[f];
   if (area <= 0) return vertices;
 
-  const AverageDistance add(Phi,
-                            {region.triangles(), region.areas(), members});
+  const AverageDistance add(Phi, {region.triangles(), region.areas(), members});
   std::vector<double> values;
   values.reserve(vertices.size());
   for (uint32_t v : vertices) values.push_back(add.At(v));
@@ -89,8 +88,11 @@ StructureDistance::StructureDistance(StructureDistance&& other) noexcept
 }
 
 double StructureDistance::operator()(uint32_t vertex) const {
-  if (!index_) return (points_.rowwise() - Phi_->row(vertex))
-                          .rowwise().squaredNorm().minCoeff();
+  if (!index_)
+    return (points_.rowwise() - Phi_->row(vertex))
+        .rowwise()
+        .squaredNorm()
+        .minCoeff();
   uint32_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   index_->tree.knnSearch(Phi_->row(vertex).data(), 1, &nearest, &distance);

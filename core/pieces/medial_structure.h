@@ -15,9 +15,10 @@ namespace marrow {
 // The local vertices of the segment made of the local faces `members` whose
 // ADD is within epsilon times the mean ADD of the least; ascending, not empty.
 // A segment without area has all its vertices.
-std::vector<uint32_t> ComputeMedialStructure(
-    const Region& region, const DiffusionMap& Phi,
-    std::span<const uint32_t> members, double epsilon);
+std::vector<uint32_t> ComputeMedialStructure(const Region& region,
+                                             const DiffusionMap& Phi,
+                                             std::span<const uint32_t> members,
+                                             double epsilon);
 
 // The squared diffusion distance from a vertex to the nearest point of a medial
 // structure. Small structures are compared point by point, large ones through a

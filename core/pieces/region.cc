@@ -14,11 +14,9 @@ std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
   std::vector<uint32_t> vertices;
   vertices.reserve(3 * faces.size());
   for (uint32_t f : faces)
-    vertices.insert(vertices.end(), mesh.faces[f].begin(),
-                    mesh.faces[f].end());
+    vertices.insert(vertices.end(), mesh.faces[f].begin(), mesh.faces[f].end());
   std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()),
-                 vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
 }
 

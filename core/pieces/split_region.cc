@@ -40,8 +40,7 @@ std::vector<Structure> InitialStructures(const Region& region,
     }
     // The first of equal maxima: the least vertex.
     const auto farthest = std::max_element(distance.begin(), distance.end());
-    if (!(*farthest > threshold) ||
-        structures.size() == kMaxMedialStructures)
+    if (!(*farthest > threshold) || structures.size() == kMaxMedialStructures)
       break;
     structures.push_back(region.BoundaryLoop(
         static_cast<uint32_t>(farthest - distance.begin())));
@@ -79,8 +78,8 @@ struct Relaxation {
 
 // The main loop of section 3, until the bijection.
 Relaxation Relax(const Region& region, const DiffusionMap& Phi,
-                 std::vector<Structure> structures,
-                 const SplitOptions& options, const CancelToken& cancel) {
+                 std::vector<Structure> structures, const SplitOptions& options,
+                 const CancelToken& cancel) {
   Relaxation result;
   std::vector<uint32_t> before;
   while (result.iterations < kMaxIterations && !cancel.IsCancelled()) {
@@ -230,8 +229,8 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
 
   RegionSplit split;
   split.iterations = relaxed.iterations;
-  split.pieces = MakePieces(region, Phi, relaxed.labels, num_labels,
-                            options.epsilon);
+  split.pieces =
+      MakePieces(region, Phi, relaxed.labels, num_labels, options.epsilon);
   if (split.pieces.size() < 2) {
     split.pieces.clear();
     split.stop_reason = StopReason::kOneSegment;
@@ -247,13 +246,13 @@ std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
   if (context.pairs.NumPairs() < 2 || region.area() <= 0)
     return region.mesh_vertices();
   const double t = TimeScale(context.pairs, region.area());
-  const DiffusionMap Phi = BuildDiffusionMap(
-      context.pairs, region.mesh_vertices(), t,
-      MapDimension(context.pairs, t, options.delta)
-          .value_or(context.pairs.NumPairs() - 1));
+  const DiffusionMap Phi =
+      BuildDiffusionMap(context.pairs, region.mesh_vertices(), t,
+                        MapDimension(context.pairs, t, options.delta)
+                            .value_or(context.pairs.NumPairs() - 1));
   std::vector<uint32_t> result;
-  for (uint32_t v : ComputeMedialStructure(region, Phi, region.AllFaces(),
-                                           options.epsilon))
+  for (uint32_t v :
+       ComputeMedialStructure(region, Phi, region.AllFaces(), options.epsilon))
     result.push_back(region.mesh_vertices()[v]);
   return result;
 }

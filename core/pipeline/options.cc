@@ -8,8 +8,8 @@ namespace marrow {
 namespace {
 
 constexpr ParameterRange kRanges[] = {
-    {"kappa", 0.1, 10},       {"delta", 0.001, 0.999}, {"epsilon", 0, 1},
-    {"tolerance", 0, 0.5},    {"eigen_pairs", 2, 1000}, {"levels", 1, 8},
+    {"kappa", 0.1, 10},    {"delta", 0.001, 0.999},  {"epsilon", 0, 1},
+    {"tolerance", 0, 0.5}, {"eigen_pairs", 2, 1000}, {"levels", 1, 8},
 };
 
 absl::Status CheckRange(const std::string& field, double value,

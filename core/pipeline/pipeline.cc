@@ -85,8 +85,8 @@ absl::Status EmitLevel(const Prepared& prepared, const SegmentTree& tree,
     face_labels.push_back(face_segment[f]);
   const std::vector<uint32_t> point_labels = PointLabels(
       prepared.canonical, prepared.adjacency, prepared.areas, face_segment);
-  const Skeleton skeleton = BuildSkeleton(prepared.canonical.mesh,
-                                          prepared.adjacency, tree, level);
+  const Skeleton skeleton =
+      BuildSkeleton(prepared.canonical.mesh, prepared.adjacency, tree, level);
   return reporter.Took(
       sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
 }
@@ -95,17 +95,17 @@ absl::Status SplitLevels(const Prepared& prepared, const EigenPairs& pairs,
                          const SegmentationOptions& options,
                          const CancelToken& cancel, Reporter& reporter,
                          Sink& sink) {
-  TreeBuilder builder({prepared.canonical.mesh, prepared.adjacency, pairs,
-                       prepared.areas},
-                      options.split, prepared.canonical.report.area);
+  TreeBuilder builder(
+      {prepared.canonical.mesh, prepared.adjacency, pairs, prepared.areas},
+      options.split, prepared.canonical.report.area);
   for (uint32_t level = 1; level <= options.levels; ++level) {
     absl::Status reported;
     MARROW_ASSIGN_OR_RETURN(
         const bool deeper, builder.Deepen(cancel, [&](double share) {
           reported.Update(reporter.Progress(
-              Stage::kSegments,
-              kSpectrumDone + (1 - kSpectrumDone) * (level - 1 + share) /
-                                  options.levels));
+              Stage::kSegments, kSpectrumDone + (1 - kSpectrumDone) *
+                                                    (level - 1 + share) /
+                                                    options.levels));
         }));
     MARROW_RETURN_IF_ERROR(reported);
     if (!deeper && level > 1) break;

@@ -83,19 +83,29 @@ std::vector<Boundary> FindBoundaries(const TriangleMesh& mesh,
   return boundaries;
 }
 
-// A link of the skeleton's tree; without a boundary it bridges components.
+// A way from one segment to another; without a boundary it bridges bodies.
 struct Link {
   uint32_t a, b;
   const Boundary* boundary;
 };
 
-// Kruskal: the longest boundaries that close no cycle.
-std::vector<Link> SpanningForest(const std::vector<Boundary>& boundaries,
-                                 DisjointSets& joined) {
+// Boundaries that may carry a bone: those of at least a quarter of the longest
+// of either segment, so that a bone does not run through a mere contact, and
+// those that connect what would else fall apart.
+std::vector<Link> StrongLinks(const std::vector<Boundary>& boundaries,
+                              DisjointSets& joined) {
+  constexpr double kStrong = 0.25;
+  std::map<uint32_t, double> longest;
+  for (const Boundary& boundary : boundaries)  // longest first
+    for (uint32_t s : {boundary.a, boundary.b})
+      longest.emplace(s, boundary.length);
   std::vector<Link> links;
-  for (const Boundary& boundary : boundaries)
-    if (joined.Union(boundary.a, boundary.b))
+  for (const Boundary& boundary : boundaries) {
+    const bool connects = joined.Union(boundary.a, boundary.b);
+    if (connects || boundary.length >= kStrong * longest[boundary.a] ||
+        boundary.length >= kStrong * longest[boundary.b])
       links.push_back({boundary.a, boundary.b, &boundary});
+  }
   return links;
 }
 
@@ -142,45 +152,71 @@ uint32_t RootPlace(const Adjacency& adjacency, const SegmentTree& tree,
   std::vector<uint32_t> votes(num_places, 0);
   for (uint32_t v : tree.nodes[0].medial_structure)
     for (uint32_t f : adjacency.VertexFaces(v)) ++votes[place[f]];
-  return static_cast<uint32_t>(
-      std::max_element(votes.begin(), votes.end()) - votes.begin());
+  return static_cast<uint32_t>(std::max_element(votes.begin(), votes.end()) -
+                               votes.begin());
 }
 
-// Breadth first from the root, neighbours in ascending order.
-Skeleton LayOut(const std::vector<Link>& links,
-                const std::vector<uint32_t>& segments,
-                const std::vector<Eigen::Vector3d>& centres, uint32_t root) {
-  std::vector<std::vector<std::pair<uint32_t, const Boundary*>>> neighbours(
-      segments.size());
+double LengthOf(const Link& link, const std::vector<Eigen::Vector3d>& centres) {
+  if (link.boundary == nullptr)
+    return (centres[link.a] - centres[link.b]).norm();
+  return (centres[link.a] - link.boundary->centre).norm() +
+         (centres[link.b] - link.boundary->centre).norm();
+}
+
+// A segment reached from the root: the link it was reached by, if any.
+struct Reached {
+  uint32_t place;
+  uint32_t from;
+  const Boundary* boundary;
+};
+
+// Dijkstra from the root: every segment hangs on its shortest way to it. Ties
+// go to the lesser place.
+std::vector<Reached> ShortestWays(const std::vector<Link>& links,
+                                  const std::vector<Eigen::Vector3d>& centres,
+                                  uint32_t root) {
+  std::vector<std::vector<const Link*>> around(centres.size());
   for (const Link& link : links) {
-    neighbours[link.a].push_back({link.b, link.boundary});
-    neighbours[link.b].push_back({link.a, link.boundary});
+    around[link.a].push_back(&link);
+    around[link.b].push_back(&link);
   }
+  using Entry = std::tuple<double, uint32_t, uint32_t, const Boundary*>;
+  auto later = [](const Entry& x, const Entry& y) {
+    return std::tie(std::get<0>(x), std::get<1>(x), std::get<2>(x)) >
+           std::tie(std::get<0>(y), std::get<1>(y), std::get<2>(y));
+  };
+  std::priority_queue<Entry, std::vector<Entry>, decltype(later)> queue(later);
+  std::vector<bool> done(centres.size(), false);
+  std::vector<Reached> order;
+  queue.push({0.0, root, kNoIndex, nullptr});
+  while (!queue.empty()) {
+    const auto [distance, place, from, boundary] = queue.top();
+    queue.pop();
+    if (done[place]) continue;
+    done[place] = true;
+    order.push_back({place, from, boundary});
+    for (const Link* link : around[place])
+      queue.push({distance + LengthOf(*link, centres),
+                  link->a == place ? link->b : link->a, place, link->boundary});
+  }
+  return order;
+}
+
+Skeleton LayOut(const std::vector<Reached>& order,
+                const std::vector<uint32_t>& segments,
+                const std::vector<Eigen::Vector3d>& centres) {
   Skeleton skeleton;
   std::vector<uint32_t> joint_of(segments.size(), kNoIndex);
-  auto add_centre = [&](uint32_t place, uint32_t parent) {
-    joint_of[place] = static_cast<uint32_t>(skeleton.joints.size());
-    skeleton.joints.push_back(
-        {parent, false, centres[place], {segments[place]}});
+  auto add = [&](Joint joint) {
+    skeleton.joints.push_back(std::move(joint));
+    return static_cast<uint32_t>(skeleton.joints.size() - 1);
   };
-  std::queue<uint32_t> queue;
-  add_centre(root, kNoIndex);
-  queue.push(root);
-  while (!queue.empty()) {
-    const uint32_t here = queue.front();
-    queue.pop();
-    std::sort(neighbours[here].begin(), neighbours[here].end());
-    for (const auto& [there, boundary] : neighbours[here]) {
-      if (joint_of[there] != kNoIndex) continue;
-      uint32_t parent = joint_of[here];
-      if (boundary != nullptr) {
-        skeleton.joints.push_back({parent, true, boundary->centre,
-                                   {segments[here], segments[there]}});
-        parent = static_cast<uint32_t>(skeleton.joints.size() - 1);
-      }
-      add_centre(there, parent);
-      queue.push(there);
-    }
+  for (const auto& [place, from, boundary] : order) {
+    uint32_t parent = from == kNoIndex ? kNoIndex : joint_of[from];
+    if (boundary != nullptr)
+      parent = add(
+          {parent, true, boundary->centre, {segments[from], segments[place]}});
+    joint_of[place] = add({parent, false, centres[place], {segments[place]}});
   }
   return skeleton;
 }
@@ -200,9 +236,9 @@ Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
   const std::vector<Boundary> boundaries =
       FindBoundaries(mesh, adjacency, place);
   DisjointSets joined(static_cast<uint32_t>(segments.size()));
-  std::vector<Link> links = SpanningForest(boundaries, joined);
+  std::vector<Link> links = StrongLinks(boundaries, joined);
   JoinBodies(centres, root, joined, links);
-  return LayOut(links, segments, centres, root);
+  return LayOut(ShortestWays(links, centres, root), segments, centres);
 }
 
 }  // namespace marrow

@@ -27,9 +27,9 @@ struct Skeleton {
   std::vector<Joint> joints;
 };
 
-// The root is the segment that holds the root node's medial structure, the
-// most central points of the mesh. Where segments meet in cycles, the longest
-// boundaries are kept (a maximum spanning tree); segments of separate
+// The root is the segment that holds the root node's medial structure, the most
+// central points of the mesh. Every other segment hangs on its shortest way to
+// the root through centres and boundaries, mere contacts left out. Separate
 // components hang on the nearest centre, without an articulation.
 Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
                        const SegmentTree& tree, uint32_t level);

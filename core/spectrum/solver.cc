@@ -65,8 +65,7 @@ class ShiftInvertOperator {
     if (progress_) progress_(done < 0.9 ? done : 1 - 0.1 * 0.9 / done);
     const Eigen::Map<const Eigen::VectorXd> in(x, rows());
     Eigen::Map<Eigen::VectorXd> out(y, rows());
-    out = sqrt_mass_.cwiseProduct(
-        cholesky_.solve(sqrt_mass_.cwiseProduct(in)));
+    out = sqrt_mass_.cwiseProduct(cholesky_.solve(sqrt_mass_.cwiseProduct(in)));
   }
   const Eigen::VectorXd& sqrt_mass() const { return sqrt_mass_; }
 
@@ -104,8 +103,7 @@ RawPairs SolveDense(const Laplacian& laplacian, uint32_t pairs) {
 }
 
 absl::StatusOr<RawPairs> SolveLanczos(const Laplacian& laplacian,
-                                      uint32_t pairs,
-                                      const CancelToken& cancel,
+                                      uint32_t pairs, const CancelToken& cancel,
                                       const ProgressCallback& progress) {
   const int n = static_cast<int>(laplacian.L.rows());
   const int basis = std::min(n, static_cast<int>(2 * pairs + 1));
@@ -120,9 +118,9 @@ absl::StatusOr<RawPairs> SolveLanczos(const Laplacian& laplacian,
                        kLanczosTolerance, Spectra::SortRule::SmallestAlge);
     if (solver.info() != Spectra::CompInfo::Successful)
       return NotConverged(converged, pairs);
-    return RawPairs{solver.eigenvalues(),
-                    op.sqrt_mass().cwiseInverse().asDiagonal() *
-                        solver.eigenvectors()};
+    return RawPairs{
+        solver.eigenvalues(),
+        op.sqrt_mass().cwiseInverse().asDiagonal() * solver.eigenvectors()};
   } catch (const Cancelled&) {
     return cancel.Check();
   } catch (const std::bad_alloc&) {
