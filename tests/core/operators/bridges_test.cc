@@ -1,0 +1,106 @@
+#include "core/operators/bridges.h"
+
+#include <algorithm>
+#include <random>
+#include <tuple>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+using Bridges = std::vector<std::array<uint32_t, 2>>;
+
+DisjointSets ComponentsOf(const TriangleMesh& mesh) {
+  DisjointSets sets(mesh.NumVertices());
+  for (const Triangle& face : mesh.faces)
+    for (int i = 1; i < 3; ++i) sets.Union(face[0], face[i]);
+  return sets;
+}
+
+// Kruskal over all pairs of vertices.
+Bridges BruteForce(const TriangleMesh& mesh) {
+  std::vector<std::tuple<double, uint32_t, uint32_t>> pairs;
+  for (uint32_t a = 0; a < mesh.NumVertices(); ++a)
+    for (uint32_t b = a + 1; b < mesh.NumVertices(); ++b)
+      pairs.push_back(
+          {(mesh.Position(a) - mesh.Position(b)).squaredNorm(), a, b});
+  std::sort(pairs.begin(), pairs.end());
+  DisjointSets sets = ComponentsOf(mesh);
+  Bridges bridges;
+  for (const auto& [distance, a, b] : pairs)
+    if (sets.Union(a, b)) bridges.push_back({a, b});
+  std::sort(bridges.begin(), bridges.end());
+  return bridges;
+}
+
+// Lone triangles and pairs of triangles whose corners `coordinate` gives.
+template <typename Coordinate>
+TriangleMesh Cloud(uint32_t bodies, std::mt19937& random,
+                   const Coordinate& coordinate) {
+  TriangleMesh mesh;
+  uint32_t n = 0;
+  for (uint32_t body = 0; body < bodies; ++body) {
+    mesh.faces.push_back({n, n + 1, n + 2});
+    n += 3;
+    if (random() % 2) {
+      mesh.faces.push_back({n - 1, n - 2, n});
+      ++n;
+    }
+  }
+  mesh.positions.resize(n, 3);
+  for (Eigen::Index i = 0; i < mesh.positions.size(); ++i)
+    mesh.positions.data()[i] = coordinate();
+  return mesh;
+}
+
+TEST(BridgesTest, NoneForOnePiece) {
+  EXPECT_THAT(FindBridges(Icosphere(1)), ::testing::IsEmpty());
+  EXPECT_THAT(FindBridges(Bowtie(2)), ::testing::IsEmpty());
+}
+
+TEST(BridgesTest, AreAMinimumSpanningTreeOfRandomClouds) {
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const TriangleMesh mesh =
+        Cloud(2 + 2 * seed, random, [&] { return random() * 0x1p-32; });
+    EXPECT_EQ(FindBridges(mesh), BruteForce(mesh)) << seed;
+  }
+}
+
+// On a lattice almost all distances have equals: the least vertices win.
+TEST(BridgesTest, BreakTiesByTheLeastVertices) {
+  for (uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    TriangleMesh mesh = Cloud(30, random, [&] { return random() % 9; });
+    // A power of two as extent keeps scaled distances exact.
+    mesh.positions.row(0).setZero();
+    mesh.positions.row(1).setConstant(8);
+    EXPECT_EQ(FindBridges(mesh), BruteForce(mesh)) << seed;
+  }
+}
+
+TEST(BridgesTest, JoinBodiesAtAnyScale) {
+  const TriangleMesh mesh = Apart(Apart(Icosphere(2), Disk(3)), Tetrahedron());
+  const Bridges bridges = FindBridges(mesh);
+  ASSERT_EQ(bridges.size(), 2u);
+  DisjointSets sets = ComponentsOf(mesh);
+  for (const auto& [a, b] : bridges) EXPECT_TRUE(sets.Union(a, b));
+  EXPECT_EQ(FindBridges(Scaled(mesh, 0x1p-66)), bridges);
+  EXPECT_EQ(FindBridges(Scaled(mesh, 0x1p66)), bridges);
+}
+
+// Ten thousand bodies at one place: quadratic work would not end in time.
+TEST(BridgesTest, ManyBodiesAtOnePlaceStayQuick) {
+  std::mt19937 random(1);
+  TriangleMesh mesh = Cloud(10'000, random, [] { return 0.0; });
+  mesh.positions(0, 0) = 1;
+  EXPECT_EQ(FindBridges(mesh).size(), 9'999u);
+}
+
+}  // namespace
+}  // namespace marrow

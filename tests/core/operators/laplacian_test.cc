@@ -1,0 +1,135 @@
+#include "core/operators/laplacian.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/operators/bridges.h"
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+double MaxDiagonal(const Laplacian& laplacian) {
+  return laplacian.L.diagonal().maxCoeff();
+}
+
+class LaplacianOfAnyShape : public ::testing::TestWithParam<NamedMesh> {
+ protected:
+  const TriangleMesh& mesh() const { return GetParam().mesh; }
+};
+
+TEST_P(LaplacianOfAnyShape, IsSymmetricToTheLastBit) {
+  const Laplacian laplacian = BuildLaplacian(mesh());
+  const Eigen::MatrixXd L = laplacian.L;
+  EXPECT_TRUE(L.allFinite());
+  EXPECT_TRUE((L.array() == L.transpose().array()).all());
+}
+
+TEST_P(LaplacianOfAnyShape, SumsToZeroInEveryRow) {
+  const Laplacian laplacian = BuildLaplacian(mesh());
+  const Eigen::VectorXd sums =
+      laplacian.L * Eigen::VectorXd::Ones(mesh().NumVertices());
+  EXPECT_LE(sums.cwiseAbs().maxCoeff(), 1e-12 * MaxDiagonal(laplacian));
+}
+
+TEST_P(LaplacianOfAnyShape, HasTheConstantsAloneInItsKernel) {
+  const Laplacian laplacian = BuildLaplacian(mesh());
+  const Eigen::VectorXd inverse_sqrt = laplacian.M.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd symmetric = inverse_sqrt.asDiagonal() *
+                                    Eigen::MatrixXd(laplacian.L) *
+                                    inverse_sqrt.asDiagonal();
+  const Eigen::VectorXd lambda =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+          symmetric, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  const double rounding = 1e-13 * lambda[lambda.size() - 1];
+  EXPECT_NEAR(lambda[0], 0, rounding);
+  EXPECT_GT(lambda[1], 0.1);
+}
+
+TEST_P(LaplacianOfAnyShape, HasPositiveMassesThatSumToOne) {
+  const Laplacian laplacian = BuildLaplacian(mesh());
+  EXPECT_GT(laplacian.M.minCoeff(), 0);
+  EXPECT_NEAR(laplacian.M.sum(), 1, 1e-12);
+}
+
+TEST_P(LaplacianOfAnyShape, DoesNotDependOnTheScale) {
+  const Laplacian unit = BuildLaplacian(mesh());
+  const std::vector<double> unit_areas = FaceAreaShares(mesh());
+  for (double factor : {1e-20, 1e-7, 3.0, 1e9, 1e20}) {
+    const TriangleMesh scaled = Scaled(mesh(), factor);
+    const Laplacian other = BuildLaplacian(scaled);
+    // Needles magnify the rounding of coordinates.
+    EXPECT_LE((unit.L - other.L).norm(), 1e-9 * unit.L.norm()) << factor;
+    EXPECT_LE((unit.M - other.M).norm(), 1e-9 * unit.M.norm()) << factor;
+    const std::vector<double> areas = FaceAreaShares(scaled);
+    for (size_t f = 0; f < areas.size(); ++f)
+      EXPECT_NEAR(areas[f], unit_areas[f], 1e-9) << factor;
+  }
+}
+
+TEST_P(LaplacianOfAnyShape, HasAreaSharesThatSumToOne) {
+  const std::vector<double> areas = FaceAreaShares(mesh());
+  ASSERT_EQ(areas.size(), mesh().NumFaces());
+  for (double area : areas) EXPECT_GE(area, 0);
+  EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), 1, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, LaplacianOfAnyShape,
+                         ::testing::ValuesIn(AllShapes()),
+                         [](const auto& info) {
+                           std::string name = info.param.name;
+                           for (char& c : name)
+                             if (c == ' ') c = '_';
+                           return name;
+                         });
+
+TEST(LaplacianTest, HasCotangentWeights) {
+  // Two right isosceles triangles: the legs weigh cot 45 / 2, the diagonal
+  // between right angles nothing.
+  const Laplacian laplacian = BuildLaplacian(Grid(1, 1));
+  EXPECT_EQ(laplacian.mollification, 0);
+  EXPECT_NEAR(laplacian.L.coeff(0, 1), -0.5, 1e-14);
+  EXPECT_NEAR(laplacian.L.coeff(0, 2), -0.5, 1e-14);
+  EXPECT_NEAR(laplacian.L.coeff(0, 3), 0, 1e-14);
+  EXPECT_NEAR(laplacian.L.coeff(0, 0), 1, 1e-14);
+  EXPECT_NEAR(laplacian.M[0], 1.0 / 3, 1e-14);
+  EXPECT_NEAR(laplacian.M[1], 1.0 / 6, 1e-14);
+}
+
+TEST(LaplacianTest, FacesAtAnEdgeOfManyAllCount) {
+  const Laplacian two = BuildLaplacian(Book(2, 1));
+  const Laplacian six = BuildLaplacian(Book(6, 1));
+  EXPECT_NEAR(six.L.coeff(0, 1), 3 * two.L.coeff(0, 1), 1e-12);
+}
+
+TEST(LaplacianTest, MollifiesOnlyWhereItMust) {
+  EXPECT_EQ(BuildLaplacian(Icosphere(3)).mollification, 0);
+  const Laplacian needles =
+      BuildLaplacian(WithSlivers(Icosphere(3), 4, 1e-12));
+  EXPECT_GT(needles.mollification, 0);
+  EXPECT_LT(needles.mollification, 1e-5);
+  const Laplacian flat = BuildLaplacian(WithSlivers(Grid(4, 4), 3, 0));
+  EXPECT_GT(flat.mollification, 0);
+  EXPECT_LT(flat.mollification, 1e-5);
+}
+
+TEST(LaplacianTest, AreaSharesAreExactForNeedles) {
+  // A triangle on a line has no area, whatever was added to its edges for L.
+  const TriangleMesh mesh = WithSlivers(Grid(4, 4), 2, 0);
+  const std::vector<double> areas = FaceAreaShares(mesh);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Eigen::Vector3d a = mesh.Position(mesh.faces[f][0]);
+    const Eigen::Vector3d u = mesh.Position(mesh.faces[f][1]) - a;
+    const Eigen::Vector3d v = mesh.Position(mesh.faces[f][2]) - a;
+    const double area = 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
+    // Heron's formula has half the digits where the area vanishes.
+    EXPECT_NEAR(areas[f], area / 16, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace marrow

@@ -1,0 +1,17 @@
+// Draco bytes for tests of whatever starts from a payload.
+#ifndef MARROW_TESTS_TESTING_DRACO_ENCODE_H_
+#define MARROW_TESTS_TESTING_DRACO_ENCODE_H_
+
+#include <string>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// Sequential, without quantization: decodes to the same points and faces in
+// the same order. Positions are rounded to float.
+std::string EncodeDraco(const TriangleMesh& mesh);
+
+}  // namespace marrow
+
+#endif  // MARROW_TESTS_TESTING_DRACO_ENCODE_H_
