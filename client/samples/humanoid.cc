@@ -22,13 +22,18 @@ CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
   torso.inner_blend = 0.04;
-  torso.cones = {
-      {{-0.075, 0.96, 0}, {0.075, 0.96, 0}, 0.125, 0.125},    // pelvis
-      {{0, 0.98, 0}, {0, 1.15, 0.01}, 0.12, 0.12},            // belly
-      {{-0.05, 1.16, 0.01}, {0.05, 1.16, 0.01}, 0.11, 0.11},  // waist
-      {{-0.09, 1.31, 0.01}, {0.09, 1.31, 0.01}, 0.125, 0.125},
-      {{-0.13, 1.4, 0}, {0.13, 1.4, 0}, 0.08, 0.08},  // shoulders
-  };
+  // Two columns side by side, from the hips over the waist to the shoulders.
+  for (const double side : {-1., 1.}) {
+    const Vector3d hip(side * 0.075, 0.96, 0);
+    const Vector3d waist(side * 0.055, 1.14, 0.01);
+    const Vector3d breast(side * 0.09, 1.31, 0.01);
+    const Vector3d shoulder(side * 0.13, 1.4, 0);
+    torso.cones.push_back({hip, waist, 0.122, 0.108});
+    torso.cones.push_back({waist, breast, 0.108, 0.12});
+    torso.cones.push_back({breast, shoulder, 0.12, 0.08});
+  }
+  torso.cones.push_back({{-0.075, 0.96, 0}, {0.075, 0.96, 0}, 0.12, 0.12});
+  torso.cones.push_back({{-0.13, 1.4, 0}, {0.13, 1.4, 0}, 0.08, 0.08});
   return torso;
 }
 
@@ -85,7 +90,7 @@ void AddLegs(Creature& creature) {
 
 CreaturePose Walk() {
   CreaturePose pose{"walk", {}};
-  TurnBoth("arm", 0, {0, 0, -38}, pose);
+  TurnBoth("arm", 0, {0, 0, -30}, pose);
   pose.turns.push_back({"left_arm", 0, {30, 0, 0}});
   pose.turns.push_back({"right_arm", 0, {-32, 0, 0}});
   TurnBoth("arm", 1, ElbowBend(28), pose);
@@ -103,7 +108,7 @@ CreaturePose Sit() {
   CreaturePose pose{"sit", {}};
   TurnBoth("leg", 0, {-82, 0, 0}, pose);
   TurnBoth("leg", 1, {84, 0, 0}, pose);
-  TurnBoth("arm", 0, {0, 0, -30}, pose);
+  TurnBoth("arm", 0, {0, 0, -26}, pose);
   TurnBoth("arm", 0, {-38, 0, 0}, pose);
   TurnBoth("arm", 1, ElbowBend(45), pose);
   pose.turns.push_back({"torso", 0, {8, 0, 0}});
@@ -113,8 +118,8 @@ CreaturePose Sit() {
 
 CreaturePose Wave() {
   CreaturePose pose{"wave", {}};
-  pose.turns.push_back({"right_arm", 0, {0, 0, -62}});
-  pose.turns.push_back({"right_arm", 1, {0, 0, -72}});
+  pose.turns.push_back({"right_arm", 0, {0, 0, -48}});
+  pose.turns.push_back({"right_arm", 1, {0, 0, -84}});
   pose.turns.push_back({"right_arm", 2, {0, 0, 14}});
   pose.turns.push_back({"left_arm", 0, {0, 0, -22}});
   pose.turns.push_back({"left_arm", 1, ElbowBend(20)});
@@ -126,7 +131,7 @@ CreaturePose Wave() {
 
 CreaturePose Run() {
   CreaturePose pose{"run", {}};
-  TurnBoth("arm", 0, {0, 0, -35}, pose);
+  TurnBoth("arm", 0, {0, 0, -28}, pose);
   pose.turns.push_back({"left_arm", 0, {48, 0, 0}});
   pose.turns.push_back({"right_arm", 0, {-46, 0, 0}});
   TurnBoth("arm", 1, ElbowBend(82), pose);

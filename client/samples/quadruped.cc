@@ -9,12 +9,13 @@ CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
   torso.inner_blend = 0.05;
-  torso.cones = {
-      {{-0.05, 0.98, -0.42}, {0.05, 0.98, -0.42}, 0.165, 0.165},
-      {{0, 1.0, -0.4}, {0, 0.99, 0}, 0.165, 0.165},
-      {{0, 0.99, 0}, {0, 0.98, 0.36}, 0.165, 0.195},
-      {{-0.04, 0.98, 0.36}, {0.04, 0.98, 0.36}, 0.19, 0.19},
-  };
+  for (const double side : {-1., 1.}) {
+    const Vector3d hip(side * 0.05, 0.98, -0.42);
+    const Vector3d belly(side * 0.025, 0.99, 0.02);
+    const Vector3d chest(side * 0.04, 0.98, 0.36);
+    torso.cones.push_back({hip, belly, 0.165, 0.158});
+    torso.cones.push_back({belly, chest, 0.158, 0.19});
+  }
   return torso;
 }
 
@@ -120,12 +121,13 @@ Creature MakeQuadruped() {
                              0.25});  // the small of the back
   AddHead(creature);
   AddLegs(creature);
-  AddLimb("tail",
-          {{{0, 1.05, -0.54}, 0.06},
-           {{0, 1.06, -0.76}, 0.047},
-           {{0, 0.92, -0.95}, 0.042},
-           {{0, 0.78, -1.08}, 0.03}},
-          0.05, creature);
+  CreaturePart& tail = AddLimb("tail",
+                               {{{0, 1.05, -0.54}, 0.06},
+                                {{0, 1.06, -0.76}, 0.047},
+                                {{0, 0.92, -0.95}, 0.042},
+                                {{0, 0.78, -1.08}, 0.03}},
+                               0.05, creature);
+  tail.inner_blend = 0.04;
   creature.poses = {{"rest", {}}, Walk(), Gallop(), Graze(), Crouch()};
   return creature;
 }
