@@ -1,0 +1,178 @@
+#include "client/encoder/order_map.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "client/encoder/face_neighbours.h"
+#include "client/segmentation.h"
+#include "core/base/status_macros.h"
+
+namespace marrow {
+namespace {
+
+using client::kNone;
+
+double Area(const PolygonMesh& mesh, const std::array<uint32_t, 3>& triangle) {
+  std::array<Eigen::Vector3d, 3> p;
+  for (int i = 0; i < 3; ++i) {
+    p[i] = Eigen::Vector3f(mesh.positions[triangle[i]].data()).cast<double>();
+  }
+  const double area = (p[1] - p[0]).cross(p[2] - p[0]).norm() / 2;
+  return std::isfinite(area) ? area : 0;
+}
+
+std::vector<bool> UsedVertices(const PolygonMesh& mesh) {
+  std::vector<bool> used(mesh.NumVertices(), false);
+  for (const uint32_t v : mesh.face_vertices) used[v] = true;
+  return used;
+}
+
+// Of the vertices of each site the first that is used, else the first.
+std::vector<uint32_t> RepresentVertices(const PayloadOrigin& origin,
+                                        const std::vector<bool>& used) {
+  std::vector<uint32_t> representative(origin.site_of_vertex.size(), kNone);
+  for (const bool only_used : {true, false}) {
+    for (uint32_t v = 0; v < origin.site_of_vertex.size(); ++v) {
+      uint32_t& chosen = representative[origin.site_of_vertex[v]];
+      if (chosen == kNone && (used[v] || !only_used)) chosen = v;
+    }
+  }
+  return representative;
+}
+
+absl::Status CheckCount(size_t got, size_t expected, const char* what) {
+  if (got == expected) return absl::OkStatus();
+  return absl::InternalError(absl::StrCat("the answer has ", got,
+                                          " labels for ", expected, " ", what));
+}
+
+// The label with the largest share of the area. Shares that differ by rounding
+// alone count as equal, and the least label wins.
+uint32_t Majority(std::vector<std::pair<uint32_t, double>>& shares) {
+  std::sort(shares.begin(), shares.end());
+  double total = 0;
+  for (const auto& [label, area] : shares) total += area;
+  constexpr double kRounding = 1e-9;
+  uint32_t best = shares.front().first;
+  double best_area = -1;
+  for (size_t i = 0; i < shares.size();) {
+    const uint32_t label = shares[i].first;
+    double area = 0;
+    for (; i < shares.size() && shares[i].first == label; ++i) {
+      area += shares[i].second;
+    }
+    if (area <= best_area + kRounding * total) continue;
+    best = label;
+    best_area = area;
+  }
+  return best;
+}
+
+}  // namespace
+
+OrderMap::OrderMap(const PolygonMesh& mesh, const PayloadOrigin& origin)
+    : num_decoded_faces_(
+          static_cast<uint32_t>(origin.triangle_of_decoded_face.size())),
+      triangle_begin_(origin.triangle_begin),
+      decoded_face_of_triangle_(origin.triangles.size(), kNone) {
+  triangle_area_.reserve(origin.triangles.size());
+  for (const auto& triangle : origin.triangles) {
+    triangle_area_.push_back(Area(mesh, triangle));
+  }
+  for (uint32_t d = 0; d < num_decoded_faces_; ++d) {
+    decoded_face_of_triangle_[origin.triangle_of_decoded_face[d]] = d;
+  }
+
+  std::vector<bool> in_payload(mesh.NumFaces(), false);
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    for (uint32_t t = triangle_begin_[f]; t < triangle_begin_[f + 1]; ++t) {
+      if (decoded_face_of_triangle_[t] != kNone) in_payload[f] = true;
+    }
+  }
+  face_in_payload_ = FindStandIns(mesh, origin.site_of_vertex, in_payload);
+
+  const std::vector<bool> used = UsedVertices(mesh);
+  const std::vector<uint32_t> representative = RepresentVertices(origin, used);
+  std::vector<uint32_t> point_of_site(mesh.NumVertices(), kNone);
+  for (uint32_t p = 0; p < origin.site_of_decoded_point.size(); ++p) {
+    const uint32_t site = origin.site_of_decoded_point[p];
+    point_of_site[site] = std::min(point_of_site[site], p);
+    vertex_of_point_.push_back(representative[site]);
+  }
+  point_of_vertex_.assign(mesh.NumVertices(), kNone);
+  for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
+    if (used[v]) point_of_vertex_[v] = point_of_site[origin.site_of_vertex[v]];
+  }
+  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
+    if (in_payload[f]) continue;
+    const uint32_t t = [&] {
+      uint32_t triangle = triangle_begin_[face_in_payload_[f]];
+      while (decoded_face_of_triangle_[triangle] == kNone) ++triangle;
+      return triangle;
+    }();
+    const uint32_t stand_in =
+        point_of_site[origin.site_of_vertex[origin.triangles[t][0]]];
+    for (const uint32_t v : mesh.Face(f)) {
+      if (point_of_vertex_[v] == kNone) point_of_vertex_[v] = stand_in;
+    }
+  }
+}
+
+uint32_t OrderMap::LabelOfFace(uint32_t face,
+                               std::span<const uint32_t> labels) const {
+  std::vector<std::pair<uint32_t, double>> shares;
+  for (uint32_t t = triangle_begin_[face]; t < triangle_begin_[face + 1]; ++t) {
+    const uint32_t decoded = decoded_face_of_triangle_[t];
+    if (decoded == kNone) continue;
+    shares.emplace_back(labels[decoded], triangle_area_[t]);
+  }
+  return shares.size() == 1 ? shares[0].first : Majority(shares);
+}
+
+absl::StatusOr<std::vector<uint32_t>> OrderMap::FaceLabelsInFileOrder(
+    std::span<const uint32_t> decoded_face_labels) const {
+  MARROW_RETURN_IF_ERROR(
+      CheckCount(decoded_face_labels.size(), num_decoded_faces_, "faces"));
+  std::vector<uint32_t> labels;
+  labels.reserve(face_in_payload_.size());
+  for (const uint32_t face : face_in_payload_) {
+    labels.push_back(LabelOfFace(face, decoded_face_labels));
+  }
+  return labels;
+}
+
+absl::StatusOr<std::vector<uint32_t>> OrderMap::VertexLabelsInFileOrder(
+    std::span<const uint32_t> decoded_point_labels) const {
+  MARROW_RETURN_IF_ERROR(
+      CheckCount(decoded_point_labels.size(), NumDecodedPoints(), "points"));
+  std::vector<uint32_t> labels;
+  labels.reserve(point_of_vertex_.size());
+  for (const uint32_t point : point_of_vertex_) {
+    labels.push_back(point == kNone ? kNone : decoded_point_labels[point]);
+  }
+  return labels;
+}
+
+absl::StatusOr<std::vector<uint32_t>> OrderMap::FileVertices(
+    std::span<const uint32_t> decoded_points) const {
+  std::vector<uint32_t> vertices;
+  vertices.reserve(decoded_points.size());
+  for (const uint32_t point : decoded_points) {
+    if (point >= NumDecodedPoints()) {
+      return absl::InternalError(absl::StrCat("the answer names point ", point,
+                                              " of ", NumDecodedPoints()));
+    }
+    vertices.push_back(vertex_of_point_[point]);
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace marrow
