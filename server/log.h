@@ -3,6 +3,7 @@
 #define MARROW_SERVER_LOG_H_
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,11 +12,12 @@ namespace marrow {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// `fields` are names and values, neither escaped.
+// `fields` are names and values, neither escaped, of any bytes.
 struct LogRecord {
   LogLevel level = LogLevel::kInfo;
   std::string message;
   std::vector<std::pair<std::string, std::string>> fields;
+  std::optional<double> seconds;  // that what is reported took
 };
 
 // Called on many threads at a time; must not block for long.

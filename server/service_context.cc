@@ -1,10 +1,10 @@
 #include "server/service_context.h"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/time/time.h"
 
 namespace marrow {
@@ -73,10 +73,10 @@ void CallRecord::Describe(std::string name, std::string value) {
 
 void CallRecord::Finished(const grpc::Status& status) {
   if (!context_.options.log) return;
-  const std::chrono::duration<double> seconds = Clock::now() - arrived_;
+  log_.seconds =
+      std::chrono::duration<double>(Clock::now() - arrived_).count();
   Describe("code", absl::StatusCodeToString(static_cast<absl::StatusCode>(
                        status.error_code())));
-  Describe("seconds", absl::StrFormat("%.3f", seconds.count()));
   if (!status.ok()) Describe("error", status.error_message());
   log_.level = LevelOf(status);
   context_.options.log(log_);
