@@ -1,0 +1,139 @@
+#include "server/mesh_store_service.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/error_reason.h"
+#include "core/base/status_macros.h"
+#include "server/event_builder.h"
+#include "server/request_parser.h"
+#include "server/run_guarded.h"
+#include "server/status.h"
+#include "server/unary_call.h"
+#include "server/upload_call.h"
+
+namespace marrow {
+namespace {
+
+constexpr int kMaxDigestsAsked = 1000;
+
+// Decoding, welding and splitting, on a machine of today; measured like
+// PredictSolverSeconds().
+constexpr double kSecondsAFace = 2e-5;
+constexpr uint64_t kBytesAFace = 600;
+
+absl::StatusOr<v1::FindMissingMeshesResponse> FindMissing(
+    ServiceContext& context, const v1::FindMissingMeshesRequest& request) {
+  if (context.draining) return Draining();
+  if (request.digests_size() > kMaxDigestsAsked) {
+    return InvalidField("digests",
+                        absl::StrCat("has ", request.digests_size(),
+                                     " entries; at most ", kMaxDigestsAsked,
+                                     " can be asked for at once"));
+  }
+  v1::FindMissingMeshesResponse response;
+  for (int i = 0; i < request.digests_size(); ++i) {
+    MARROW_ASSIGN_OR_RETURN(
+        const MeshDigest digest,
+        ParseMeshDigest(request.digests(i), absl::StrCat("digests[", i, "]"),
+                        context.options));
+    MARROW_ASSIGN_OR_RETURN(const auto payload, context.store.Find(digest));
+    if (payload == nullptr) *response.add_missing() = request.digests(i);
+  }
+  return response;
+}
+
+struct Inspection {
+  Payload payload;
+  uint32_t eigen_pairs;
+};
+
+absl::StatusOr<Inspection> ParseInspection(
+    ServiceContext& context, const v1::InspectMeshRequest& request) {
+  if (context.draining) return Draining();
+  Inspection inspection;
+  MARROW_ASSIGN_OR_RETURN(
+      inspection.eigen_pairs,
+      ParseEigenPairs(request.has_eigen_pairs(), request.eigen_pairs(),
+                      "eigen_pairs"));
+  MARROW_ASSIGN_OR_RETURN(inspection.payload,
+                          ResolveMesh(request.has_mesh(), request.mesh(),
+                                      context.options, context.store));
+  return inspection;
+}
+
+absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
+                                                const Inspection& inspection) {
+  MARROW_ASSIGN_OR_RETURN(
+      const CanonicalMesh mesh,
+      context.engine.load_mesh(*inspection.payload.bytes,
+                               context.options.mesh_limits));
+  const uint32_t count = inspection.eigen_pairs;
+  v1::InspectMeshResponse response;
+  SetMeshReport(mesh.report, response.mutable_report());
+  SetMeshDigest(inspection.payload.digest, response.mutable_mesh_digest());
+  SetGeometryDigest(mesh.geometry_digest, response.mutable_geometry_digest());
+  response.set_spectrum_cached(context.spectra.Contains(mesh, count));
+  response.set_predicted_seconds(
+      PredictSolverSeconds(mesh.report.vertices, count) +
+      kSecondsAFace * static_cast<double>(mesh.report.faces));
+  response.set_predicted_bytes(
+      PredictSolverBytes(mesh.report.vertices, count) +
+      kBytesAFace * mesh.report.faces);
+  return response;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* MeshStoreService::FindMissingMeshes(
+    grpc::CallbackServerContext* call,
+    const v1::FindMissingMeshesRequest* request,
+    v1::FindMissingMeshesResponse* response) {
+  auto* reactor = new UnaryCall<v1::FindMissingMeshesResponse>(
+      context_, *call, "MeshStoreService.FindMissingMeshes", response);
+  reactor->state()->Finish(FindMissing(context_, *request));
+  return reactor;
+}
+
+grpc::ServerReadReactor<v1::UploadMeshRequest>* MeshStoreService::UploadMesh(
+    grpc::CallbackServerContext* call, v1::UploadMeshResponse* response) {
+  auto* reactor = new UploadCall(context_, *call, response);
+  reactor->Begin();
+  return reactor;
+}
+
+grpc::ServerUnaryReactor* MeshStoreService::InspectMesh(
+    grpc::CallbackServerContext* call, const v1::InspectMeshRequest* request,
+    v1::InspectMeshResponse* response) {
+  auto* reactor = new UnaryCall<v1::InspectMeshResponse>(
+      context_, *call, "MeshStoreService.InspectMesh", response);
+  const auto state = reactor->state();
+  absl::StatusOr<Inspection> inspection = ParseInspection(context_, *request);
+  if (!inspection.ok()) {
+    state->Finish(inspection.status());
+    return reactor;
+  }
+  state->Describe("mesh",
+                  inspection->payload.digest.sha256.Hex().substr(0, 12));
+  const absl::Status accepted = context_.pool.Submit(
+      state->cancel(),
+      [&context = context_, state, inspection = *std::move(inspection)] {
+        v1::InspectMeshResponse found;
+        const absl::Status status = RunGuarded(*state->cancel(), [&] {
+          auto result = Inspect(context, inspection);
+          if (result.ok()) found = *std::move(result);
+          return result.status();
+        });
+        if (status.ok()) {
+          state->Finish(std::move(found));
+        } else {
+          state->Finish(status);
+        }
+      });
+  if (!accepted.ok()) state->Finish(accepted);
+  return reactor;
+}
+
+}  // namespace marrow

@@ -1,0 +1,165 @@
+#include "server/segment_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "server/event_builder.h"
+#include "server/run_guarded.h"
+
+namespace marrow {
+namespace {
+
+double SecondsBetween(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+// The cache as one job sees it: adds up what the job took from it.
+class JobEigenPairs : public EigenPairSource {
+ public:
+  explicit JobEigenPairs(SpectrumCache& cache) : cache_(cache) {}
+
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress) override {
+    const Clock::time_point begin = Clock::now();
+    SpectrumUse use;
+    auto pairs = cache_.Get(mesh, count, cancel, progress, use);
+    seconds_ += SecondsBetween(begin, Clock::now());
+    use_.eigen_pairs = std::max(use_.eigen_pairs, use.eigen_pairs);
+    use_.solver_runs += use.solver_runs;
+    // One miss among several makes the whole a miss.
+    if (use_.outcome != CacheOutcome::kMiss &&
+        use.outcome != CacheOutcome::kHit) {
+      use_.outcome = use.outcome;
+    }
+    return pairs;
+  }
+
+  const SpectrumUse& use() const { return use_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  SpectrumCache& cache_;
+  SpectrumUse use_;
+  double seconds_ = 0;
+};
+
+class JobSink : public Sink {
+ public:
+  JobSink(const Outputs& outputs, SegmentJob& job)
+      : outputs_(outputs), job_(job) {}
+
+  bool OnProgress(Stage stage, double fraction) override {
+    return job_.Progress(ToStage(stage), fraction);
+  }
+
+  bool OnMesh(const CanonicalMesh& mesh) override {
+    mesh_ready_ = Clock::now();
+    level_events_.emplace(mesh);
+    geometry_digest_ = mesh.geometry_digest;
+    v1::SegmentEvent event;
+    SetMeshReport(mesh.report, event.mutable_mesh_report());
+    return job_.Append(std::move(event));
+  }
+
+  bool OnLevel(const LevelResult& result) override {
+    if (!outputs_.levels.contains(result.level)) return Going();
+    Append(level_events_->OfLevel(result.tree, result.level));
+    if (outputs_.face_labels) {
+      Append(LabelEvents(result.level, v1::LABEL_DOMAIN_FACE,
+                         result.face_labels));
+    }
+    if (outputs_.point_labels) {
+      Append(LabelEvents(result.level, v1::LABEL_DOMAIN_VERTEX,
+                         result.point_labels));
+    }
+    if (outputs_.skeletons) {
+      Append(SkeletonEvents(result.level, result.skeleton));
+    }
+    if (result.level == 1) first_level_ = Clock::now();
+    return Going();
+  }
+
+  bool OnTree(const SegmentTree& tree) override {
+    level_events_->AddLastSplits(tree, completed_.mutable_completed());
+    return Going();
+  }
+
+  // The last event. REQUIRES: the pipeline succeeded.
+  v1::SegmentEvent TakeCompleted(const MeshDigest& mesh_digest,
+                                 const JobEigenPairs& pairs,
+                                 Clock::time_point begin) {
+    v1::Completed* completed = completed_.mutable_completed();
+    SetMeshDigest(mesh_digest, completed->mutable_mesh_digest());
+    SetGeometryDigest(geometry_digest_, completed->mutable_geometry_digest());
+    SetSpectrumUse(pairs.use(), completed->mutable_spectrum());
+    const Clock::time_point end = Clock::now();
+    v1::Timings* timings = completed->mutable_timings();
+    timings->set_queued_seconds(SecondsBetween(job_.created(), begin));
+    timings->set_mesh_seconds(SecondsBetween(begin, mesh_ready_));
+    timings->set_spectrum_seconds(pairs.seconds());
+    timings->set_segments_seconds(SecondsBetween(mesh_ready_, end) -
+                                  pairs.seconds());
+    timings->set_total_seconds(SecondsBetween(job_.created(), end));
+    if (first_level_.has_value()) {
+      timings->set_first_level_seconds(
+          SecondsBetween(job_.created(), *first_level_));
+    }
+    return std::move(completed_);
+  }
+
+ private:
+  bool Going() const { return !job_.cancel()->IsCancelled(); }
+
+  void Append(std::vector<v1::SegmentEvent> events) {
+    for (v1::SegmentEvent& event : events) job_.Append(std::move(event));
+  }
+
+  const Outputs& outputs_;
+  SegmentJob& job_;
+  std::optional<LevelEvents> level_events_;
+  Digest geometry_digest_;
+  Clock::time_point mesh_ready_;
+  std::optional<Clock::time_point> first_level_;
+  v1::SegmentEvent completed_;
+};
+
+}  // namespace
+
+std::string SegmentJobKey(const MeshDigest& mesh,
+                          const SegmentParameters& parameters) {
+  const SegmentationOptions& options = parameters.options;
+  const Outputs& outputs = parameters.outputs;
+  DigestBuilder key("marrow segment job 1");
+  key.AddString(mesh.sha256.Hex());
+  for (const double value : {options.split.kappa, options.split.delta,
+                             options.split.epsilon, options.split.tolerance}) {
+    key.Add(&value, sizeof(value));
+  }
+  key.AddU64(options.eigen_pairs);
+  key.AddU64(options.levels);
+  key.AddU64(outputs.face_labels);
+  key.AddU64(outputs.point_labels);
+  key.AddU64(outputs.skeletons);
+  for (const uint32_t level : outputs.levels) key.AddU64(level);
+  return key.Finish().Hex();
+}
+
+void RunSegmentJob(ServiceContext& context, const Payload& payload,
+                   const SegmentParameters& parameters, SegmentJob& job) {
+  const Clock::time_point begin = Clock::now();
+  JobEigenPairs pairs(context.spectra);
+  JobSink sink(parameters.outputs, job);
+  const absl::Status status = RunGuarded(*job.cancel(), [&] {
+    return context.engine.run(*payload.bytes, context.options.mesh_limits,
+                              parameters.options, pairs, *job.cancel(), sink);
+  });
+  if (!status.ok()) return job.Fail(status);
+  job.Complete(sink.TakeCompleted(payload.digest, pairs, begin));
+}
+
+}  // namespace marrow

@@ -1,0 +1,81 @@
+// Keeps eigen-pairs in memory, and computes what it lacks once, however many
+// ask for it at the same time.
+#ifndef MARROW_SERVER_SPECTRUM_CACHE_H_
+#define MARROW_SERVER_SPECTRUM_CACHE_H_
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "core/base/digest.h"
+#include "core/spectrum/eigen_pairs.h"
+#include "server/lru_cache.h"
+
+namespace marrow {
+
+enum class CacheOutcome { kHit, kMiss, kJoined };
+
+// How one caller came by its eigen-pairs.
+struct SpectrumUse {
+  CacheOutcome outcome = CacheOutcome::kHit;
+  uint32_t solver_runs = 0;  // by this caller
+  uint32_t eigen_pairs = 0;  // without the constant one
+};
+
+// The key is the geometry, the number of pairs and the solver's revision: an
+// entry with more pairs does not serve a request for fewer, since Lanczos
+// rounds differently for another count and the answer would depend on who
+// asked before.
+//
+// Thread safe.
+class SpectrumCache : public EigenPairSource {
+ public:
+  // An entry above `budget_bytes` is given to those who wait for it but not
+  // kept.
+  SpectrumCache(std::shared_ptr<EigenPairSource> solver, uint64_t budget_bytes);
+
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress) override;
+
+  // Get() that also tells in `use` how the pairs were had.
+  //
+  // Callers for one key wait for the first of them, which computes. Where that
+  // one is cancelled, another takes over; where it fails, those who waited get
+  // its error, and whoever asks later tries anew. A caller that is cancelled
+  // stops waiting within kPollInterval.
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress, SpectrumUse& use);
+
+  // Whether Get() would be a hit now.
+  bool Contains(const CanonicalMesh& mesh, uint32_t count);
+
+  uint64_t bytes();
+
+ private:
+  struct Key {
+    Digest geometry;
+    uint32_t count;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
+  struct Flight;
+  using Result = absl::StatusOr<std::shared_ptr<const EigenPairs>>;
+
+  static Key KeyOf(const CanonicalMesh& mesh, uint32_t count);
+  Result Lead(const Key& key, Flight& flight, const CanonicalMesh& mesh,
+              const CancelToken& cancel, const ProgressCallback& progress);
+
+  const std::shared_ptr<EigenPairSource> solver_;
+  absl::Mutex mu_;
+  LruCache<Key, EigenPairs> entries_ ABSL_GUARDED_BY(mu_);
+  std::map<Key, std::shared_ptr<Flight>> flights_ ABSL_GUARDED_BY(mu_);
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_SERVER_SPECTRUM_CACHE_H_
