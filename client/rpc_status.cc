@@ -33,6 +33,9 @@ absl::Status WithDetails(absl::Status status, const v1::RpcStatus& details) {
       description = bad.field_violations(0).description();
     }
   }
+  // Some servers repeat the field before the description.
+  const std::string prefix = field + ": ";
+  if (description.starts_with(prefix)) description.erase(0, prefix.size());
   if (!field.empty() && status.code() == absl::StatusCode::kInvalidArgument) {
     status = InvalidField(field, description);
   }
