@@ -30,8 +30,8 @@ struct SegmentNode {
 };
 
 struct Joint {
-  uint32_t id = 0;          // position in Skeleton::joints
-  uint32_t parent = kNone;  // kNone for the root, which is joint 0
+  uint32_t id = 0;            // position in Skeleton::joints
+  uint32_t parent = kNone;    // kNone for the root, which is joint 0
   bool articulation = false;  // centre of a boundary, else centre of a segment
   Point3 position{};
   // The segment whose centre this is, or the two that meet here.
@@ -45,7 +45,7 @@ struct Skeleton {
 };
 
 struct Level {
-  uint32_t level = 0;  // 1 is the coarsest
+  uint32_t level = 0;                   // 1 is the coarsest
   std::vector<uint32_t> face_labels;    // a node id a face of the file
   std::vector<uint32_t> vertex_labels;  // a node id a vertex, or kNone
   Skeleton skeleton;

@@ -1,0 +1,260 @@
+#include "client/answer_builder.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/message_json.h"
+#include "core/base/crc32c.h"
+#include "core/base/status_macros.h"
+
+namespace marrow::client {
+namespace {
+
+// Deeper than any server may go (levels: 1 to 8), so that a later server's
+// wider range still fits.
+constexpr uint32_t kMaxLevels = 64;
+
+template <typename... Args>
+absl::Status Bad(const Args&... args) {
+  return absl::DataLossError(
+      absl::StrCat("the server's answer is broken: ", args...));
+}
+
+std::vector<uint32_t> UnpackUint32(const std::string& bytes) {
+  std::vector<uint32_t> values(bytes.size() / sizeof(uint32_t));
+  for (size_t i = 0; i < values.size(); ++i) {
+    uint32_t value = 0;
+    for (size_t b = 0; b < sizeof(uint32_t); ++b) {
+      value |= uint32_t{static_cast<unsigned char>(bytes[4 * i + b])}
+               << (8 * b);
+    }
+    values[i] = value;
+  }
+  return values;
+}
+
+Point3 ToPoint(const v1::Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+AnswerBuilder::AnswerBuilder(uint32_t num_faces, uint32_t num_points)
+    : num_faces_(num_faces), num_points_(num_points) {}
+
+absl::Status AnswerBuilder::Add(const v1::SegmentEvent& event) {
+  if (event.sequence() != ++sequence_) {
+    return Bad("event ", event.sequence(), " came in place of ", sequence_);
+  }
+  if (completed_) return Bad("an event came after the last");
+  switch (event.event_case()) {
+    case v1::SegmentEvent::kMeshReport:
+      report_ = ReportJson(event.mesh_report());
+      return absl::OkStatus();
+    case v1::SegmentEvent::kLevel:
+      return AddLevel(event.level());
+    case v1::SegmentEvent::kLabels:
+      return AddLabels(event.labels());
+    case v1::SegmentEvent::kSkeleton:
+      return AddSkeleton(event.skeleton());
+    case v1::SegmentEvent::kWarning:
+      if (warnings_.size() < num_faces_) {
+        warnings_.push_back({{"code", event.warning().code()},
+                             {"message", event.warning().message()}});
+      }
+      return absl::OkStatus();
+    case v1::SegmentEvent::kCompleted:
+      return AddCompleted(event.completed());
+    default:  // accepted, progress, and what later servers may add
+      return absl::OkStatus();
+  }
+}
+
+absl::Status AnswerBuilder::AddLevel(const v1::Level& level) {
+  if (level.level() != levels_.size() + 1 || level.level() > kMaxLevels) {
+    return Bad("level ", level.level(), " came after ", levels_.size());
+  }
+  levels_.emplace_back().level.level = level.level();
+  // A vertex lies in at most as many segments as it has faces, and with level
+  // 1 the root comes too.
+  size_t medial_budget = size_t{6} * num_faces_;
+  for (const v1::Node& node : level.nodes()) {
+    MARROW_RETURN_IF_ERROR(AddNode(node, medial_budget));
+  }
+  for (const v1::Split& split : level.splits()) {
+    MARROW_RETURN_IF_ERROR(AddSplit(split));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::AddNode(const v1::Node& node,
+                                    size_t& medial_budget) {
+  // Every split has two children at least, so a tree over m faces has fewer
+  // than 2 m nodes.
+  if (nodes_.size() >= size_t{2} * num_faces_) return Bad("too many nodes");
+  const std::string& medial = node.medial_structure();
+  if (medial.size() % sizeof(uint32_t) != 0 ||
+      medial.size() / sizeof(uint32_t) > medial_budget) {
+    return Bad("the medial structure of node ", node.id(), " has ",
+               medial.size(), " bytes");
+  }
+  SegmentNode result;
+  result.id = node.id();
+  result.parent = node.has_parent() ? node.parent() : kNone;
+  result.level = node.level();
+  result.area = node.area();
+  result.centroid = ToPoint(node.centroid());
+  result.medial_structure = UnpackUint32(medial);
+  medial_budget -= result.medial_structure.size();
+  for (uint32_t point : result.medial_structure) {
+    if (point >= num_points_) {
+      return Bad("node ", node.id(), " has point ", point, " of ", num_points_);
+    }
+  }
+  if (!nodes_.emplace(node.id(), std::move(result)).second) {
+    return Bad("node ", node.id(), " came twice");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::AddSplit(const v1::Split& split) {
+  const auto it = nodes_.find(split.id());
+  if (it == nodes_.end()) return Bad("there is no node ", split.id());
+  if (static_cast<size_t>(split.children_size()) > nodes_.size()) {
+    return Bad("node ", split.id(), " has too many children");
+  }
+  SegmentNode& node = it->second;
+  node.children.assign(split.children().begin(), split.children().end());
+  node.iterations = split.iterations();
+  node.stop_reason =
+      node.children.empty() ? StopReasonName(split.stop_reason()) : "";
+  return absl::OkStatus();
+}
+
+absl::StatusOr<AnswerBuilder::PartialLevel*> AnswerBuilder::LevelOf(
+    uint32_t level) {
+  if (level == 0 || level > levels_.size()) {
+    return Bad("level ", level, " was not announced");
+  }
+  return &levels_[level - 1];
+}
+
+absl::Status AnswerBuilder::AddLabels(const v1::Labels& labels) {
+  MARROW_ASSIGN_OR_RETURN(PartialLevel * partial, LevelOf(labels.level()));
+  const bool faces = labels.domain() == v1::LABEL_DOMAIN_FACE;
+  if (!faces && labels.domain() != v1::LABEL_DOMAIN_VERTEX) {
+    return absl::OkStatus();  // a domain of later servers
+  }
+  const uint32_t expected = faces ? num_faces_ : num_points_;
+  std::vector<uint32_t>& known =
+      faces ? partial->level.face_labels : partial->level.vertex_labels;
+  const std::string& bytes = labels.labels();
+  if (labels.total_count() != expected) {
+    return Bad("it has ", labels.total_count(), " labels for ", expected,
+               faces ? " faces" : " points");
+  }
+  if (labels.first_index() != known.size() ||
+      bytes.size() % sizeof(uint32_t) != 0 ||
+      bytes.size() / sizeof(uint32_t) > expected - known.size()) {
+    return Bad("a chunk of labels does not fit at ", labels.first_index());
+  }
+  if (Crc32c(bytes) != labels.labels_crc32c()) {
+    return Bad("the checksum of a chunk of labels does not match");
+  }
+  const std::vector<uint32_t> values = UnpackUint32(bytes);
+  known.insert(known.end(), values.begin(), values.end());
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::AddSkeleton(const v1::Skeleton& skeleton) {
+  MARROW_ASSIGN_OR_RETURN(PartialLevel * partial, LevelOf(skeleton.level()));
+  if (partial->has_skeleton) return Bad("a skeleton came twice");
+  partial->has_skeleton = true;
+  for (const v1::Joint& joint : skeleton.joints()) {
+    Joint result;
+    result.id = static_cast<uint32_t>(partial->level.skeleton.joints.size());
+    result.parent = joint.has_parent() ? joint.parent() : kNone;
+    if (joint.has_parent() ? result.parent >= result.id : result.id != 0) {
+      return Bad("joint ", result.id, " has no parent before it");
+    }
+    result.articulation = joint.kind() == v1::JOINT_KIND_ARTICULATION;
+    result.position = ToPoint(joint.position());
+    result.segments.assign(joint.segments().begin(), joint.segments().end());
+    for (uint32_t segment : result.segments) {
+      if (!nodes_.contains(segment)) return Bad("no node ", segment);
+    }
+    partial->level.skeleton.joints.push_back(std::move(result));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::AddCompleted(const v1::Completed& completed) {
+  completed_ = true;
+  timings_ = TimingsJson(completed.timings());
+  cache_ = CacheJson(completed.spectrum());
+  cache_["mesh_digest"] = HexOf(completed.mesh_digest().sha256());
+  cache_["geometry_digest"] = HexOf(completed.geometry_digest().sha256());
+  for (const v1::Split& split : completed.splits()) {
+    MARROW_RETURN_IF_ERROR(AddSplit(split));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::CheckTree() const {
+  size_t links = 0;
+  for (const auto& [id, node] : nodes_) {
+    if ((id == 0) != (node.parent == kNone)) return Bad("it has two roots");
+    for (uint32_t child : node.children) {
+      const auto it = nodes_.find(child);
+      if (it == nodes_.end() || it->second.parent != id || child <= id) {
+        return Bad("node ", child, " is no child of ", id);
+      }
+    }
+    if (std::adjacent_find(node.children.begin(), node.children.end(),
+                           std::greater_equal<>()) != node.children.end()) {
+      return Bad("the children of node ", id, " are not ascending");
+    }
+    links += node.children.size();
+  }
+  if (!nodes_.contains(0) || links + 1 != nodes_.size()) {
+    return Bad("its nodes are no tree");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::CheckLevel(const PartialLevel& partial) const {
+  const Level& level = partial.level;
+  if (level.face_labels.size() != num_faces_ ||
+      level.vertex_labels.size() != num_points_) {
+    return Bad("level ", level.level, " lacks labels");
+  }
+  for (uint32_t label : level.face_labels) {
+    if (!nodes_.contains(label)) return Bad("label ", label, " is no node");
+  }
+  for (uint32_t label : level.vertex_labels) {
+    if (label != kNone && !nodes_.contains(label)) {
+      return Bad("label ", label, " is no node");
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Segmentation> AnswerBuilder::Finish() {
+  if (!completed_) return Bad("it ends without its last event");
+  if (levels_.empty()) return Bad("it has no level");
+  MARROW_RETURN_IF_ERROR(CheckTree());
+  Segmentation result;
+  for (PartialLevel& partial : levels_) {
+    MARROW_RETURN_IF_ERROR(CheckLevel(partial));
+    result.levels.push_back(std::move(partial.level));
+  }
+  for (auto& [id, node] : nodes_) result.nodes.push_back(std::move(node));
+  report_["warnings"] = std::move(warnings_);
+  result.report = std::move(report_);
+  result.timings = std::move(timings_);
+  result.cache = std::move(cache_);
+  return result;
+}
+
+}  // namespace marrow::client

@@ -1,0 +1,106 @@
+// The client of Marrow's services.
+#ifndef MARROW_CLIENT_CLIENT_H_
+#define MARROW_CLIENT_CLIENT_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
+#include "client/call_group.h"
+#include "client/payload.h"
+#include "client/segmentation.h"
+#include "marrow/v1/capabilities_service.grpc.pb.h"
+#include "marrow/v1/mesh_store_service.grpc.pb.h"
+#include "marrow/v1/segmentation_service.grpc.pb.h"
+#include "marrow/v1/spectrum_service.grpc.pb.h"
+
+namespace marrow::client {
+
+// The answer to one ComputeSpectrum call.
+struct Spectrum {
+  std::vector<double> eigenvalues;  // ascending, the constant pair's 0 first
+  // eigenvectors[k * num_points + p]: pair k at point p of the payload. Empty
+  // where they were not asked for.
+  std::vector<double> eigenvectors;
+  uint32_t num_points = 0;
+  nlohmann::json report;
+  nlohmann::json timings;
+  nlohmann::json cache;
+};
+
+// Receives the events of a call, in order, on the thread that called.
+using SegmentObserver = std::function<void(const v1::SegmentEvent&)>;
+
+// Thread safe. Failed calls have the server's code and message, and its reason
+// and field for ReasonOf() and FieldOf() (core/base/error_reason.h). A server
+// that does not answer at all gives UNAVAILABLE without a reason, an answer
+// that contradicts itself DATA_LOSS.
+//
+// Meshes above the server's inline limit are named by digest first and
+// uploaded only where the server lacks them.
+class Client {
+ public:
+  // Connects, or fails with UNAVAILABLE within `patience`. The address is
+  // HOST:PORT or what else gRPC takes.
+  static absl::StatusOr<std::unique_ptr<Client>> Connect(
+      const std::string& address, absl::Duration patience);
+
+  // Talks over a channel that is there. Whatever serves it must outlive the
+  // client.
+  explicit Client(std::shared_ptr<grpc::Channel> channel);
+
+  // `timeout` bounds each function as a whole, uploads included.
+  // Labels are those of the payload's faces and points as it decodes.
+  absl::StatusOr<Segmentation> Segment(const Payload& payload,
+                                       const v1::SegmentationOptions& options,
+                                       absl::Duration timeout,
+                                       const SegmentObserver& observer);
+  absl::StatusOr<v1::InspectMeshResponse> Inspect(const Payload& payload,
+                                                  absl::Duration timeout);
+  // The mesh of `parameters` is set by the call.
+  absl::StatusOr<Spectrum> ComputeSpectrum(
+      const Payload& payload, const v1::ComputeSpectrumRequest& parameters,
+      absl::Duration timeout,
+      const std::function<void(const v1::Progress&)>& observer);
+  absl::StatusOr<v1::GetCapabilitiesResponse> GetCapabilities(
+      absl::Duration timeout);
+  // OK where the server says SERVING.
+  absl::Status CheckHealth(absl::Duration timeout);
+
+  // Ends what runs with CANCELLED, and every later call at once.
+  void Cancel() { calls_.Cancel(); }
+
+ private:
+  // Sends a request whose mesh is `source`.
+  using Attempt =
+      std::function<absl::Status(const v1::MeshSource&, absl::Time deadline)>;
+
+  // Calls `attempt` with the mesh inline or by digest, uploading where needed.
+  absl::Status WithMesh(const Payload& payload, absl::Time deadline,
+                        const Attempt& attempt);
+  absl::Status Upload(const Payload& payload, const v1::MeshDigest& digest,
+                      absl::Time deadline);
+  absl::StatusOr<uint64_t> InlineLimit(absl::Time deadline);
+
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<v1::SegmentationService::Stub> segmentation_;
+  std::unique_ptr<v1::MeshStoreService::Stub> store_;
+  std::unique_ptr<v1::SpectrumService::Stub> spectrum_;
+  std::unique_ptr<v1::CapabilitiesService::Stub> capabilities_;
+  CallGroup calls_;
+  absl::Mutex mutex_;
+  uint64_t inline_limit_ ABSL_GUARDED_BY(mutex_) = 0;  // 0: not asked yet
+};
+
+}  // namespace marrow::client
+
+#endif  // MARROW_CLIENT_CLIENT_H_

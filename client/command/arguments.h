@@ -1,0 +1,67 @@
+// What the command line asked for.
+#ifndef MARROW_CLIENT_COMMAND_ARGUMENTS_H_
+#define MARROW_CLIENT_COMMAND_ARGUMENTS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/time/time.h"
+
+namespace marrow::client {
+
+// What all commands that call a server share.
+struct ServiceArguments {
+  std::string server;             // empty: compute in this process
+  std::optional<double> timeout;  // seconds a file
+  uint32_t threads = 0;           // 0: one a core
+  uint32_t quantize = 0;          // bits a coordinate; 0: lossless
+  bool json = false;
+  bool quiet = false;
+
+  absl::Duration Timeout() const {
+    return timeout.has_value() ? absl::Seconds(*timeout)
+                               : absl::InfiniteDuration();
+  }
+};
+
+// An absent parameter has the server's default.
+struct SegmentArguments {
+  std::vector<std::string> files;
+  std::string folder = ".";
+  std::optional<double> kappa;
+  std::optional<double> delta;
+  std::optional<double> epsilon;
+  std::optional<double> tolerance;
+  std::optional<uint32_t> pairs;
+  std::optional<uint32_t> levels;
+  bool parts = false;
+  bool png = false;
+  ServiceArguments service;
+};
+
+struct InspectArguments {
+  std::string file;
+  ServiceArguments service;
+};
+
+struct SpectrumArguments {
+  std::string file;
+  std::optional<uint32_t> pairs;
+  std::string output;  // a .npy file for the eigenvectors; empty: none
+  ServiceArguments service;
+};
+
+struct SampleArguments {
+  bool list = false;
+  std::string name;
+  std::string pose;
+  std::string output;
+  std::string parts;
+  std::optional<uint32_t> faces;
+};
+
+}  // namespace marrow::client
+
+#endif  // MARROW_CLIENT_COMMAND_ARGUMENTS_H_

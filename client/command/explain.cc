@@ -1,0 +1,73 @@
+#include "client/command/explain.h"
+
+#include <string_view>
+
+#include "absl/strings/str_cat.h"
+#include "client/command/exit_code.h"
+#include "core/base/error_reason.h"
+
+namespace marrow::client {
+namespace {
+
+// options.eigen_pairs -> --pairs; empty for a field that no option sets.
+std::string OptionOf(const std::string& field) {
+  const std::string name = field.substr(field.rfind('.') + 1);
+  if (name == "eigen_pairs") return "--pairs";
+  for (const char* known :
+       {"kappa", "delta", "epsilon", "tolerance", "levels"}) {
+    if (name == known) return absl::StrCat("--", name);
+  }
+  return "";
+}
+
+bool IsUnreachable(const absl::Status& status) {
+  return absl::IsUnavailable(status) && ReasonOf(status).empty();
+}
+
+}  // namespace
+
+std::string Explain(const absl::Status& status) {
+  std::string message(status.message());
+  const std::string field = FieldOf(status);
+  const std::string option = OptionOf(field);
+  if (!option.empty() && message.starts_with(field)) {
+    return option + message.substr(field.size());
+  }
+  if (absl::IsDeadlineExceeded(status)) {
+    return absl::StrCat("not done in time (", message,
+                        "): give it more with --timeout");
+  }
+  return message;
+}
+
+std::string ExplainFor(const std::string& file, const absl::Status& status) {
+  const std::string message = Explain(status);
+  const bool about_all = ConcernsAllFiles(status);
+  if (about_all || message.starts_with(file)) return message;
+  return absl::StrCat(file, ": ", message);
+}
+
+int ExitCodeOf(const absl::Status& status) {
+  if (status.ok()) return kExitOk;
+  if (IsUnreachable(status)) return kExitUnreachable;
+  return OptionOf(FieldOf(status)).empty() ? kExitFailed : kExitUsage;
+}
+
+bool ConcernsAllFiles(const absl::Status& status) {
+  return ExitCodeOf(status) > kExitFailed;
+}
+
+nlohmann::json ErrorJson(const absl::Status& status) {
+  nlohmann::json result = {{"event", "error"},
+                           {"code", absl::StatusCodeToString(status.code())},
+                           {"message", Explain(status)}};
+  if (const std::string reason = ReasonOf(status); !reason.empty()) {
+    result["reason"] = reason;
+  }
+  if (const std::string field = FieldOf(status); !field.empty()) {
+    result["field"] = field;
+  }
+  return result;
+}
+
+}  // namespace marrow::client

@@ -1,0 +1,90 @@
+#include <cstdio>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/command/commands.h"
+#include "client/command/exit_code.h"
+#include "client/command/reporter.h"
+#include "client/command/service_call.h"
+#include "client/message_json.h"
+#include "core/base/status_macros.h"
+
+namespace marrow::client {
+namespace {
+
+constexpr char kInspectSchema[] = "marrow.inspection/1";
+
+void PrintCount(const char* what, uint64_t count) {
+  absl::PrintF("  %-24s %d\n", what, count);
+}
+
+void PrintBox(const v1::MeshReport& report) {
+  absl::PrintF("  %-24s %g %g %g to %g %g %g\n", "box", report.box_min().x(),
+               report.box_min().y(), report.box_min().z(), report.box_max().x(),
+               report.box_max().y(), report.box_max().z());
+}
+
+void PrintForPerson(const std::string& file,
+                    const v1::InspectMeshResponse& response) {
+  const v1::MeshReport& report = response.report();
+  absl::PrintF("%s\n", file);
+  PrintCount("vertices", report.vertices());
+  PrintCount("faces", report.faces());
+  PrintCount("components", report.components());
+  PrintCount("boundary loops", report.boundary_loops());
+  PrintCount("boundary edges", report.boundary_edges());
+  PrintCount("non-manifold edges", report.nonmanifold_edges());
+  PrintCount("non-manifold vertices", report.nonmanifold_vertices());
+  PrintCount("degenerate faces", report.degenerate_faces());
+  PrintCount("duplicate faces", report.duplicate_faces());
+  PrintCount("zero-area faces", report.zero_area_faces());
+  PrintCount("unused points", report.unused_points());
+  absl::PrintF("  %-24s %d\n", "Euler characteristic",
+               report.euler_characteristic());
+  absl::PrintF("  %-24s %g\n", "area", report.area());
+  PrintBox(report);
+  absl::PrintF("  %-24s %.1f s, %.0f MiB%s\n", "segmenting takes about",
+               response.predicted_seconds(),
+               static_cast<double>(response.predicted_bytes()) / (1 << 20),
+               response.spectrum_cached() ? ", spectrum kept" : "");
+  absl::PrintF("  %-24s %s\n", "geometry",
+               HexOf(response.geometry_digest().sha256()));
+}
+
+nlohmann::json ToJson(const std::string& file,
+                      const v1::InspectMeshResponse& response) {
+  return {{"schema", kInspectSchema},
+          {"file", file},
+          {"report", ReportJson(response.report())},
+          {"mesh_digest", HexOf(response.mesh_digest().sha256())},
+          {"geometry_digest", HexOf(response.geometry_digest().sha256())},
+          {"spectrum_cached", response.spectrum_cached()},
+          {"predicted_seconds", response.predicted_seconds()},
+          {"predicted_bytes", response.predicted_bytes()}};
+}
+
+absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {
+  MARROW_ASSIGN_OR_RETURN(
+      const Input input, LoadInput(arguments.file, arguments.service.quantize));
+  MARROW_RETURN_IF_ERROR(call.Connect());
+  MARROW_ASSIGN_OR_RETURN(
+      const v1::InspectMeshResponse response,
+      call.client().Inspect(input.payload, arguments.service.Timeout()));
+  if (arguments.service.json) {
+    PrintJsonLine(ToJson(arguments.file, response));
+  } else {
+    PrintForPerson(arguments.file, response);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+int RunInspect(const InspectArguments& arguments) {
+  ServiceCall call(arguments.service);
+  const absl::Status status = Inspect(arguments, call);
+  if (status.ok() || call.interrupted()) return call.ExitCode(kExitOk);
+  return TellFailure(arguments.file, status, arguments.service.json);
+}
+
+}  // namespace marrow::client

@@ -1,0 +1,234 @@
+#include "client/command/parse.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "client/command/arguments.h"
+#include "client/command/commands.h"
+#include "client/command/exit_code.h"
+
+namespace marrow::client {
+namespace {
+
+constexpr char kAbout[] =
+    "Splits meshes of creatures into a tree of parts, with a skeleton a "
+    "level.\n\n"
+    "Meshes are OFF, OBJ, PLY, STL, glTF, GLB or Draco files.";
+
+constexpr char kFooter[] = R"(Examples:
+  marrow sample humanoid --pose wave -o me.off    a creature to try
+  marrow segment me.off --png -o out              its parts, and pictures
+  marrow segment a.obj b.glb --server host:50051  on a server
+  marrow inspect me.off                           what is in a file
+`marrow SUBCOMMAND --help` tells more.
+
+Exit codes:
+  0    all went well
+  1    a file failed; the others are done
+  2    the command line asks for something impossible
+  3    the server cannot be reached, or was lost
+  130  stopped by Ctrl-C (128 + the signal's number)
+
+Environment:
+  MARROW_SERVER  the server to use where --server is not given. Without
+                 either, the work is done in this process.)";
+
+constexpr char kSegmentFooter[] =
+    R"(For FILE = path/STEM.ext these appear in DIR, all together or not at all:
+  STEM.seg            the automatic cut (level 2, or 1 where there is no 2):
+                      one label a face and line, in the file's face order
+  STEM.level-N.seg    the same for each level; 1 is the coarsest
+  STEM.level-N.ply    the mesh coloured by segment, on faces and vertices
+  STEM.json           the tree, the skeletons, a report on the mesh, timings
+  STEM.level-N.png    with --png: a picture with the skeleton
+  STEM.parts.obj      with --parts: each segment of the cut an object
+Labels are the ids of the tree's nodes in STEM.json. What an earlier run left
+of these for STEM is replaced as a whole.
+
+With --json each event is a line {"event": ..., "file": ...} on standard
+output: accepted, progress, mesh_report, level, skeleton, warning, then
+completed (with the files that were written) or error; at last one summary.
+Lines of several files may alternate. A failure is told on standard error too.
+
+Ctrl-C stops the work and leaves no file half written; a second one ends at
+once.)";
+
+constexpr char kSpectrumFooter[] =
+    R"(Prints the eigenvalues of the Laplace-Beltrami operator, ascending, one a line,
+the constant function's 0 first. With -o the eigenvectors are written as a
+NumPy array (float64, a row a vertex of the file, a column an eigenvalue; NaN
+for a vertex that no face uses).)";
+
+constexpr char kHealthFooter[] =
+    R"(Exit code 0 where the server takes calls, 1 where it answers that it does not,
+3 where nothing answers.)";
+
+void AddServer(CLI::App& app, std::string& server, const char* otherwise) {
+  app.add_option(
+         "--server", server,
+         std::string("HOST:PORT of a marrowd; without it, ") + otherwise)
+      ->envname("MARROW_SERVER")
+      ->type_name("ADDR");
+}
+
+void AddService(CLI::App& app, ServiceArguments& service) {
+  AddServer(app, service.server, "the work is done in this process");
+  app.add_option("--timeout", service.timeout,
+                 "Give a file up after this many seconds")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  app.add_option("--quantize", service.quantize,
+                 "Send coordinates with this many bits, 1 to 30; without it "
+                 "they are sent exactly")
+      ->check(CLI::Range(1, 30))
+      ->type_name("BITS");
+  app.add_flag("--json", service.json, "Write JSON to standard output");
+}
+
+void AddQuiet(CLI::App& app, ServiceArguments& service) {
+  app.add_flag("-q,--quiet", service.quiet, "Tell nothing but failures");
+}
+
+void AddPairs(CLI::App& app, const std::string& names,
+              std::optional<uint32_t>& pairs) {
+  app.add_option(names, pairs,
+                 "Eigen-pairs besides the constant one, 2 to 1000 (200)")
+      ->type_name("N");
+}
+
+// A value's range is the server's business, so that there is one place for it.
+void AddParameters(CLI::App& app, SegmentArguments& arguments) {
+  app.add_option("--kappa", arguments.kappa,
+                 "Higher gives fewer segments, 0.1 to 10 (1.5)")
+      ->type_name("X");
+  app.add_option("--delta", arguments.delta,
+                 "Where the diffusion map is cut, 0.001 to 0.999 (0.1)")
+      ->type_name("X");
+  app.add_option("--epsilon", arguments.epsilon,
+                 "How thick medial structures are, 0 to 1 (0.01)")
+      ->type_name("X");
+  app.add_option("--tolerance", arguments.tolerance,
+                 "Share of vertices that may still move, 0 to 0.5 (0.01)")
+      ->type_name("X");
+  AddPairs(app, "--pairs", arguments.pairs);
+  app.add_option("--levels", arguments.levels, "Depth of the tree, 1 to 8 (3)")
+      ->type_name("N");
+}
+
+void AddSegment(CLI::App& root, SegmentArguments& arguments) {
+  CLI::App& app = *root.add_subcommand(
+      "segment", "Split meshes into parts and write the results");
+  app.add_option("FILE", arguments.files, "Mesh files")
+      ->required()
+      ->type_name("");
+  app.add_option("-o,--output", arguments.folder,
+                 "Folder of the results, made where it is missing; without "
+                 "it, the current one")
+      ->type_name("DIR");
+  app.add_flag("--png", arguments.png, "Write a picture a level");
+  app.add_flag("--parts", arguments.parts, "Write the parts as OBJ objects");
+  AddParameters(app, arguments);
+  AddService(app, arguments.service);
+  AddQuiet(app, arguments.service);
+  app.add_option("--threads", arguments.service.threads,
+                 "Files to work on at once; without it, one a core")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  app.footer(kSegmentFooter);
+}
+
+void AddInspect(CLI::App& root, InspectArguments& arguments) {
+  CLI::App& app =
+      *root.add_subcommand("inspect", "Tell what is in a mesh file");
+  app.add_option("FILE", arguments.file, "Mesh file")
+      ->required()
+      ->type_name("");
+  AddService(app, arguments.service);
+}
+
+void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
+  CLI::App& app = *root.add_subcommand(
+      "spectrum", "Print the eigenvalues of a mesh, or write eigenvectors");
+  app.add_option("FILE", arguments.file, "Mesh file")
+      ->required()
+      ->type_name("");
+  AddPairs(app, "-k,--pairs", arguments.pairs);
+  app.add_option("-o,--output", arguments.output,
+                 "Write the eigenvectors to this .npy file")
+      ->type_name("FILE");
+  AddService(app, arguments.service);
+  AddQuiet(app, arguments.service);
+  app.footer(kSpectrumFooter);
+}
+
+void AddSample(CLI::App& root, SampleArguments& arguments) {
+  CLI::App& app =
+      *root.add_subcommand("sample", "Make a creature to try Marrow with");
+  CLI::Option* list = app.add_flag("--list", arguments.list,
+                                   "List the creatures and their poses");
+  app.add_option("NAME", arguments.name, "Which creature")->type_name("");
+  app.add_option("--pose", arguments.pose, "Its pose; without it, at rest")
+      ->type_name("POSE");
+  app.add_option("-o,--output", arguments.output,
+                 "The mesh file: .off, .obj, .ply, .stl or .drc")
+      ->type_name("FILE");
+  app.add_option("--parts", arguments.parts,
+                 "Write the known part of each face, as a .seg file")
+      ->type_name("FILE.seg");
+  app.add_option("--faces", arguments.faces,
+                 "Number of faces, 5000 to 50000 (10000)")
+      ->type_name("N");
+  app.callback([&arguments, list] {
+    if (list->count() > 0) return;
+    if (arguments.name.empty()) throw CLI::RequiredError("NAME (or --list)");
+    if (arguments.output.empty()) throw CLI::RequiredError("-o FILE");
+  });
+}
+
+void AddHealth(CLI::App& root, std::string& server) {
+  CLI::App& app =
+      *root.add_subcommand("health", "Ask whether a server takes calls");
+  AddServer(app, server, "127.0.0.1:50051 is asked");
+  app.footer(kHealthFooter);
+}
+
+struct Arguments {
+  SegmentArguments segment;
+  InspectArguments inspect;
+  SpectrumArguments spectrum;
+  SampleArguments sample;
+  std::string health_server;
+};
+
+int Run(const CLI::App& app, const Arguments& arguments) {
+  if (app.got_subcommand("segment")) return RunSegment(arguments.segment);
+  if (app.got_subcommand("inspect")) return RunInspect(arguments.inspect);
+  if (app.got_subcommand("spectrum")) return RunSpectrum(arguments.spectrum);
+  if (app.got_subcommand("sample")) return RunSample(arguments.sample);
+  return RunHealth(arguments.health_server);
+}
+
+}  // namespace
+
+int RunCommandLine(int argc, const char* const* argv) {
+  CLI::App app(kAbout, "marrow");
+  Arguments arguments;
+  app.set_version_flag("--version", "marrow " MARROW_VERSION,
+                       "Print the version and exit");
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  AddSegment(app, arguments.segment);
+  AddInspect(app, arguments.inspect);
+  AddSpectrum(app, arguments.spectrum);
+  AddSample(app, arguments.sample);
+  AddHealth(app, arguments.health_server);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  return Run(app, arguments);
+}
+
+}  // namespace marrow::client

@@ -1,0 +1,43 @@
+// The files that one input leaves behind: all of them, or none.
+#ifndef MARROW_CLIENT_COMMAND_RESULT_FOLDER_H_
+#define MARROW_CLIENT_COMMAND_RESULT_FOLDER_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace marrow::client {
+
+// The name of an input without folder and last extension.
+std::string StemOf(const std::string& path);
+
+// INVALID_ARGUMENT where two inputs would write one file: they have one STEM,
+// or one's STEM is a result's of the other, such as a and a.level-1.
+absl::Status CheckStems(const std::vector<std::string>& inputs);
+
+// Makes the folder where it is missing, and checks that files can be made in
+// it. Errors name it and say what to do.
+absl::Status PrepareFolder(const std::string& folder);
+
+struct ResultFile {
+  std::string name;  // without folder
+  std::string bytes;
+};
+
+// Replaces the results of `stem` in `folder` by `files`: those of an earlier
+// run that this one does not write again (a deeper level, a picture) go. Until
+// all are written the old ones stand; after an error they still do. Results
+// are what IsResultName() says; other files, and folders, are left alone.
+//
+// Errors: those of WriteFileAtomically.
+absl::Status PublishResults(const std::string& folder, const std::string& stem,
+                            const std::vector<ResultFile>& files);
+
+// STEM.seg, STEM.json, STEM.parts.obj, STEM.level-N.{seg,ply,png}.
+bool IsResultName(const std::string& stem, const std::string& name);
+
+}  // namespace marrow::client
+
+#endif  // MARROW_CLIENT_COMMAND_RESULT_FOLDER_H_

@@ -1,0 +1,64 @@
+#include "client/command/service_call.h"
+
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "client/command/exit_code.h"
+#include "client/command/explain.h"
+#include "client/command/reporter.h"
+#include "core/base/status_macros.h"
+
+namespace marrow::client {
+
+ServiceCall::ServiceCall(const ServiceArguments& arguments)
+    : arguments_(arguments), interrupt_([this] {
+        absl::MutexLock lock(&mutex_);
+        if (cancellable_ != nullptr) cancellable_->Cancel();
+      }) {}
+
+ServiceCall::~ServiceCall() {
+  absl::MutexLock lock(&mutex_);
+  cancellable_ = nullptr;
+}
+
+absl::Status ServiceCall::Connect() {
+  MARROW_ASSIGN_OR_RETURN(
+      connection_,
+      client::Connect({.server = arguments_.server,
+                       .threads = static_cast<int>(arguments_.threads)}));
+  absl::MutexLock lock(&mutex_);
+  cancellable_ = &connection_->client();
+  if (interrupted()) cancellable_->Cancel();
+  return absl::OkStatus();
+}
+
+int ServiceCall::ExitCode(int otherwise) const {
+  return interrupted() ? kExitSignal + interrupt_.signal() : otherwise;
+}
+
+absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize) {
+  EncodeOptions options;
+  options.quantization_bits = static_cast<int>(quantize);
+  MARROW_ASSIGN_OR_RETURN(MeshPayload loaded,
+                          LoadMeshPayload(path, options, MeshLimits()));
+  Input input;
+  input.mesh = std::move(loaded.mesh);
+  input.order = std::move(loaded.encoded.order);
+  input.payload = {.draco = std::move(loaded.encoded.bytes),
+                   .num_faces = input.order.NumDecodedFaces(),
+                   .num_points = input.order.NumDecodedPoints()};
+  return input;
+}
+
+int TellFailure(const std::string& file, const absl::Status& status,
+                bool json) {
+  if (json) {
+    nlohmann::json event = ErrorJson(status);
+    event["file"] = file;
+    PrintJsonLine(event);
+  }
+  absl::FPrintF(stderr, "marrow: %s\n", ExplainFor(file, status));
+  return ExitCodeOf(status);
+}
+
+}  // namespace marrow::client
