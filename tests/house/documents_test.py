@@ -82,6 +82,17 @@ class DocumentsTest(unittest.TestCase):
         for path, words in found:
             self.check_options(path, run(f"{BIN}/marrowd", "--help"), words)
 
+    def check_table(self, document, *command):
+        """The options in the tables of a document are in a help text."""
+        text = tree.text(document)
+        options = re.findall(r"^\| `(--[a-z-]+)`", text, re.MULTILINE)
+        self.assertTrue(options)
+        self.check_options(document, run(*command, "--help"), options)
+
+    def test_option_tables_are_true(self):
+        self.check_table("README.md", f"{BIN}/marrow", "segment")
+        self.check_table("docs/operating.md", f"{BIN}/marrowd")
+
     def test_links_lead_to_files(self):
         for path, text in documents():
             for link in LINK.findall(text):
