@@ -1,0 +1,101 @@
+#include "client/mesh_file/text_scanner.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace marrow {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+TEST(TextScannerTest, SkipsBlankLinesAndCommentsAndCountsLines) {
+  TextScanner scanner("f", "\xEF\xBB\xBF# head\n\n a  b#c\r\n\td\n");
+  ASSERT_TRUE(scanner.NextLine());
+  EXPECT_EQ(scanner.line(), 3u);
+  EXPECT_EQ(scanner.NextToken(), "a");
+  EXPECT_EQ(scanner.NextToken(), "b");
+  EXPECT_EQ(scanner.NextToken(), "");
+  ASSERT_TRUE(scanner.NextLine());
+  EXPECT_EQ(scanner.line(), 4u);
+  EXPECT_EQ(scanner.NextToken(), "d");
+  EXPECT_FALSE(scanner.NextLine());
+  EXPECT_FALSE(scanner.NextLine());
+  EXPECT_EQ(scanner.NextTokenAcrossLines(), "");
+}
+
+TEST(TextScannerTest, ReadsOldMacLineEnds) {
+  TextScanner scanner("f", "a\rb c\r");
+  EXPECT_EQ(scanner.NextTokenAcrossLines(), "a");
+  EXPECT_EQ(scanner.NextTokenAcrossLines(), "b");
+  EXPECT_EQ(scanner.line(), 2u);
+}
+
+TEST(TextScannerTest, JoinsContinuedLines) {
+  TextScanner scanner("f", "a \\\r\nb\\\nc\nd",
+                      {.comments = true, .continuations = true});
+  ASSERT_TRUE(scanner.NextLine());
+  EXPECT_EQ(scanner.NextToken(), "a");
+  EXPECT_EQ(scanner.NextToken(), "b");
+  EXPECT_EQ(scanner.NextToken(), "c");
+  EXPECT_EQ(scanner.NextToken(), "");
+  ASSERT_TRUE(scanner.NextLine());
+  EXPECT_EQ(scanner.NextToken(), "d");
+  EXPECT_EQ(scanner.Error("bad").message(), "f: line 4: bad");
+}
+
+float Parsed(const std::string& token) {
+  float value = -12345;
+  EXPECT_TRUE(ParseFloat(token, &value)) << token;
+  return value;
+}
+
+TEST(ParseFloatTest, RoundsCorrectly) {
+  // Halfway between two floats but for the last digit.
+  EXPECT_EQ(Parsed("1.00000005960464477539062500001"), 1.00000011920928955f);
+  EXPECT_EQ(Parsed("16777217"), 16777216.0f);
+  EXPECT_EQ(Parsed("+.5e1"), 5.0f);
+  EXPECT_TRUE(std::signbit(Parsed("-0")));
+}
+
+TEST(ParseFloatTest, TakesWhatIsNotFinite) {
+  EXPECT_TRUE(std::isnan(Parsed("NaN")));
+  EXPECT_TRUE(std::isnan(Parsed("-nan")));
+  EXPECT_EQ(Parsed("+inf"), kInfinity);
+  EXPECT_EQ(Parsed("-Infinity"), -kInfinity);
+}
+
+TEST(ParseFloatTest, RoundsWhatIsOutOfRange) {
+  EXPECT_EQ(Parsed("1e50"), kInfinity);
+  EXPECT_EQ(Parsed("-1e5000"), -kInfinity);
+  EXPECT_EQ(Parsed("1e-60"), 0.0f);
+  EXPECT_EQ(Parsed("-1e-5000"), 0.0f);
+  EXPECT_EQ(Parsed("1e-45"), std::numeric_limits<float>::denorm_min());
+}
+
+TEST(ParseFloatTest, RefusesOtherText) {
+  float value = 0;
+  for (const char* token : {"", "x", "1,5", "1.5x", "+-1", "--1", "0x10"}) {
+    EXPECT_FALSE(ParseFloat(token, &value)) << token;
+  }
+}
+
+TEST(ParseFloatTest, DoesNotHeedTheLocale) {
+  const std::string old = std::setlocale(LC_ALL, nullptr);
+  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) {
+    GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
+  }
+  EXPECT_EQ(Parsed("1.5"), 1.5f);
+  std::setlocale(LC_ALL, old.c_str());
+}
+
+TEST(QuotedTest, IsShortAndPrintable) {
+  EXPECT_EQ(Quoted("a\tb"), "'a?b'");
+  EXPECT_EQ(Quoted(std::string(100, 'x')), "'" + std::string(40, 'x') + "...'");
+}
+
+}  // namespace
+}  // namespace marrow
