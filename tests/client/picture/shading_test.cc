@@ -75,7 +75,9 @@ TEST(ShadingTest, TurnedOverFacesLookTheSame) {
 
 TEST(ShadingTest, HollowsAreDarker) {
   LabelledMesh flat;
-  AddBox({-1, -1, -0.2f}, {1, 1, 0}, 0, flat);
+  flat.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  flat.mesh.AddFace(std::vector<uint32_t>{0, 1, 2, 3});
+  flat.labels = {0};
   LabelledMesh walled = flat;
   AddBox({-0.9f, -0.9f, 0}, {-0.2f, 0.9f, 0.8f}, 0, walled);
   AddBox({0.2f, -0.9f, 0}, {0.9f, 0.9f, 0.8f}, 0, walled);
