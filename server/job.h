@@ -160,7 +160,7 @@ class Job : public Tickable {
   }
 
  private:
-  static constexpr std::chrono::milliseconds kMinProgressInterval{100};
+  static constexpr std::chrono::milliseconds kMinProgressInterval{250};
 
   void AppendLocked(Event event) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
     if (end_.has_value()) return;

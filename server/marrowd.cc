@@ -192,7 +192,8 @@ int main(int argc, char** argv) {
   }
   flags.options.reflection = !flags.no_reflection;
 
-  JsonLog log(flags.log_level);
+  // Never destroyed: gRPC's threads may log until the process is gone.
+  JsonLog& log = *new JsonLog(flags.log_level);
   grpc_log = &log;
   gpr_set_log_function(&LogFromGrpc);
   flags.options.log = [&log](const LogRecord& record) { log.Write(record); };

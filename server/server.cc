@@ -138,6 +138,8 @@ class ServerImpl final : public Server {
     context_.calls.WaitForNone(grace);
     server_->Shutdown(std::chrono::system_clock::now());
     server_->Wait();
+    // gRPC may have let go of a call whose state another thread still drops.
+    context_.calls.WaitForNone(std::chrono::hours(1));
     drained_ = true;
   }
 

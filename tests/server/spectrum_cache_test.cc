@@ -1,0 +1,241 @@
+#include "server/spectrum_cache.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "absl/synchronization/notification.h"
+
+namespace marrow {
+namespace {
+
+using std::chrono::milliseconds;
+
+CanonicalMesh MeshNamed(uint8_t name, int vertices = 100) {
+  CanonicalMesh mesh;
+  mesh.mesh.positions = Positions::Zero(vertices, 3);
+  mesh.geometry_digest.bytes[0] = name;
+  return mesh;
+}
+
+// 100 rows of count + 1 pairs; counts its calls, and may be held up or made to
+// fail.
+class FakeSolver : public EigenPairSource {
+ public:
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress) override {
+    ++calls;
+    progress(0.5);
+    while (hold && !cancel.IsCancelled()) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    if (cancel.IsCancelled()) return cancel.Check();
+    if (fail) return absl::InternalError("did not converge");
+    auto pairs = std::make_shared<EigenPairs>();
+    pairs->eigenvalues = Eigen::VectorXd::Zero(count + 1);
+    pairs->eigenvectors.setZero(mesh.mesh.NumVertices(), count + 1);
+    return std::shared_ptr<const EigenPairs>(pairs);
+  }
+
+  std::atomic<int> calls{0};
+  std::atomic<bool> hold{false};
+  std::atomic<bool> fail{false};
+};
+
+void WaitUntil(const std::function<bool()>& done) {
+  for (int i = 0; i < 5000 && !done(); ++i) {
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  ASSERT_TRUE(done());
+}
+
+class SpectrumCacheTest : public ::testing::Test {
+ protected:
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      SpectrumCache& cache, const CanonicalMesh& mesh, uint32_t count) {
+    return cache.Get(mesh, count, never_, [](double) {}, use_);
+  }
+
+  std::shared_ptr<FakeSolver> solver_ = std::make_shared<FakeSolver>();
+  CancelToken never_;
+  SpectrumUse use_;
+};
+
+TEST_F(SpectrumCacheTest, SecondCallIsAHitOfTheSamePairs) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  EXPECT_FALSE(cache.Contains(mesh, 10));
+  const auto first = Get(cache, mesh, 10);
+  ASSERT_TRUE(first.ok());
+  EXPECT_EQ(use_.outcome, CacheOutcome::kMiss);
+  EXPECT_EQ(use_.solver_runs, 1u);
+  EXPECT_EQ(use_.eigen_pairs, 10u);
+  const auto second = Get(cache, mesh, 10);
+  EXPECT_EQ(use_.outcome, CacheOutcome::kHit);
+  EXPECT_EQ(use_.solver_runs, 0u);
+  EXPECT_EQ(use_.eigen_pairs, 10u);
+  EXPECT_EQ(*first, *second);
+  EXPECT_EQ(solver_->calls, 1);
+  EXPECT_TRUE(cache.Contains(mesh, 10));
+}
+
+TEST_F(SpectrumCacheTest, AnotherCountOrMeshIsAMiss) {
+  SpectrumCache cache(solver_, 1 << 20);
+  ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
+  ASSERT_TRUE(Get(cache, MeshNamed(1), 9).ok());
+  ASSERT_TRUE(Get(cache, MeshNamed(2), 10).ok());
+  EXPECT_EQ(solver_->calls, 3);
+}
+
+TEST_F(SpectrumCacheTest, CountsAboveTheMeshAreOneRequest) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1, 8);
+  ASSERT_TRUE(Get(cache, mesh, 7).ok());
+  ASSERT_TRUE(Get(cache, mesh, 900).ok());
+  EXPECT_EQ(use_.eigen_pairs, 7u);
+  EXPECT_EQ(solver_->calls, 1);
+}
+
+TEST_F(SpectrumCacheTest, TheBudgetDropsWhatWasUsedLongestAgo) {
+  // An entry of 10 pairs: (11 + 1100) doubles, somewhat over 8,888 bytes.
+  SpectrumCache cache(solver_, 20'000);
+  ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
+  ASSERT_TRUE(Get(cache, MeshNamed(2), 10).ok());
+  ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
+  ASSERT_TRUE(Get(cache, MeshNamed(3), 10).ok());
+  EXPECT_LE(cache.bytes(), 20'000u);
+  EXPECT_TRUE(cache.Contains(MeshNamed(1), 10));
+  EXPECT_FALSE(cache.Contains(MeshNamed(2), 10));
+  EXPECT_TRUE(cache.Contains(MeshNamed(3), 10));
+}
+
+TEST_F(SpectrumCacheTest, WhatIsLargerThanTheBudgetIsServedButNotKept) {
+  SpectrumCache cache(solver_, 20'000);
+  ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
+  EXPECT_TRUE(Get(cache, MeshNamed(2), 90).ok());
+  EXPECT_FALSE(cache.Contains(MeshNamed(2), 90));
+  EXPECT_TRUE(cache.Contains(MeshNamed(1), 10));
+}
+
+TEST_F(SpectrumCacheTest, FailuresAreNotKept) {
+  SpectrumCache cache(solver_, 1 << 20);
+  solver_->fail = true;
+  EXPECT_TRUE(absl::IsInternal(Get(cache, MeshNamed(1), 10).status()));
+  solver_->fail = false;
+  EXPECT_TRUE(Get(cache, MeshNamed(1), 10).ok());
+  EXPECT_EQ(solver_->calls, 2);
+}
+
+// One caller on a thread of its own.
+struct Caller {
+  Caller(SpectrumCache& cache, const CanonicalMesh& mesh)
+      : thread([this, &cache, &mesh] {
+          result = cache.Get(
+              mesh, 10, cancel,
+              [this](double f) {
+                EXPECT_GE(f, progress.load());
+                progress = f;
+              },
+              use);
+          done.Notify();
+        }) {}
+  ~Caller() { thread.join(); }
+
+  CancelToken cancel;
+  SpectrumUse use;
+  std::atomic<double> progress{-1};
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> result;
+  absl::Notification done;
+  std::thread thread;
+};
+
+TEST_F(SpectrumCacheTest, ConcurrentCallersComputeOnce) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  solver_->hold = true;
+  std::vector<std::unique_ptr<Caller>> callers;
+  for (int i = 0; i < 8; ++i) {
+    callers.push_back(std::make_unique<Caller>(cache, mesh));
+  }
+  for (const auto& caller : callers) {
+    WaitUntil([&] { return caller->progress >= 0.5; });
+  }
+  solver_->hold = false;
+  int misses = 0;
+  for (const auto& caller : callers) {
+    caller->done.WaitForNotification();
+    EXPECT_TRUE(caller->result.ok());
+    EXPECT_NE(caller->use.outcome, CacheOutcome::kHit);
+    misses += caller->use.outcome == CacheOutcome::kMiss;
+  }
+  EXPECT_EQ(misses, 1);
+  EXPECT_EQ(solver_->calls, 1);
+}
+
+TEST_F(SpectrumCacheTest, AWaiterTakesOverFromACancelledLeader) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  solver_->hold = true;
+  Caller leader(cache, mesh);
+  WaitUntil([&] { return solver_->calls == 1; });
+  Caller waiter(cache, mesh);
+  WaitUntil([&] { return waiter.progress >= 0.5; });
+  leader.cancel.Cancel();
+  WaitUntil([&] { return solver_->calls == 2; });
+  solver_->hold = false;
+  waiter.done.WaitForNotification();
+  leader.done.WaitForNotification();
+  EXPECT_TRUE(absl::IsCancelled(leader.result.status()));
+  EXPECT_TRUE(waiter.result.ok());
+  EXPECT_EQ(waiter.use.outcome, CacheOutcome::kMiss);
+  EXPECT_EQ(waiter.use.solver_runs, 1u);
+}
+
+TEST_F(SpectrumCacheTest, ACancelledWaiterLeavesAtOnce) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  solver_->hold = true;
+  Caller leader(cache, mesh);
+  WaitUntil([&] { return solver_->calls == 1; });
+  {
+    Caller waiter(cache, mesh);
+    WaitUntil([&] { return waiter.progress >= 0.5; });
+    waiter.cancel.Cancel();
+    EXPECT_TRUE(
+        waiter.done.WaitForNotificationWithTimeout(absl::Milliseconds(500)));
+    EXPECT_TRUE(absl::IsCancelled(waiter.result.status()));
+  }
+  EXPECT_FALSE(leader.done.HasBeenNotified());
+  solver_->hold = false;
+  leader.done.WaitForNotification();
+  EXPECT_TRUE(leader.result.ok());
+}
+
+TEST_F(SpectrumCacheTest, ManyCallersUnderCancellationAllGetAnAnswer) {
+  SpectrumCache cache(solver_, 30'000);
+  std::vector<std::thread> threads;
+  std::atomic<int> answered{0};
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < 200; ++i) {
+        CancelToken cancel;
+        if ((i + t) % 5 == 0) cancel.Cancel();
+        const auto result = cache.Get(MeshNamed((i * 7 + t) % 6), 10, cancel,
+                                      [](double) {});
+        answered += result.ok() || absl::IsCancelled(result.status());
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(answered, 1600);
+  EXPECT_LE(cache.bytes(), 30'000u);
+}
+
+}  // namespace
+}  // namespace marrow

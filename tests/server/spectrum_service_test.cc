@@ -1,0 +1,82 @@
+#include "server/spectrum_service.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/base/crc32c.h"
+#include "tests/server/service_fixture.h"
+
+namespace marrow::testing {
+namespace {
+
+class SpectrumServiceTest : public ServiceTest {
+ protected:
+  std::vector<v1::SpectrumEvent> Compute(
+      const v1::ComputeSpectrumRequest& request) {
+    grpc::ClientContext context;
+    auto reader = spectrum_->ComputeSpectrum(&context, request);
+    std::vector<v1::SpectrumEvent> events;
+    v1::SpectrumEvent event;
+    uint64_t sequence = 0;
+    while (reader->Read(&event)) {
+      EXPECT_EQ(event.sequence(), ++sequence);
+      if (!event.has_progress()) events.push_back(event);
+    }
+    status_ = reader->Finish();
+    return events;
+  }
+
+  grpc::Status status_;
+};
+
+TEST_F(SpectrumServiceTest, PrewarmsTheCache) {
+  Start();
+  v1::ComputeSpectrumRequest request;
+  request.mutable_mesh()->set_draco(StarPayload(3));
+  request.set_eigen_pairs(20);
+  const auto events = Compute(request);
+  ASSERT_TRUE(status_.ok()) << status_.error_message();
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].header().pair_count(), 21u);
+  EXPECT_EQ(events[0].header().report().vertices(), 642u);
+  EXPECT_EQ(events[1].eigenvalues().eigenvalues_size(), 21);
+  EXPECT_EQ(events[1].eigenvalues().eigenvalues(0), 0);
+  EXPECT_EQ(events[2].completed().spectrum().outcome(),
+            v1::CACHE_OUTCOME_MISS);
+  EXPECT_EQ(Segment(Request(StarPayload(3))).completed().spectrum().outcome(),
+            v1::CACHE_OUTCOME_HIT);
+  EXPECT_EQ(solver_->calls, 1);
+}
+
+TEST_F(SpectrumServiceTest, EigenvectorsComeOnDemand) {
+  Start();
+  v1::ComputeSpectrumRequest request;
+  request.mutable_mesh()->set_draco(StarPayload(2));
+  request.set_eigen_pairs(5);
+  request.set_include_eigenvectors(true);
+  const auto events = Compute(request);
+  ASSERT_TRUE(status_.ok()) << status_.error_message();
+  ASSERT_EQ(events.size(), 3u + 6u);
+  const auto points = events[0].header().point_count();
+  for (uint32_t pair = 0; pair < 6; ++pair) {
+    const v1::EigenvectorChunk& chunk = events[2 + pair].eigenvector_chunk();
+    EXPECT_EQ(chunk.pair(), pair);
+    EXPECT_EQ(chunk.values().size(), points * sizeof(double));
+    EXPECT_EQ(chunk.values_crc32c(), Crc32c(chunk.values()));
+  }
+}
+
+TEST_F(SpectrumServiceTest, BadFieldsAreNamed) {
+  Start();
+  v1::ComputeSpectrumRequest request;
+  request.set_eigen_pairs(1001);
+  EXPECT_TRUE(Compute(request).empty());
+  EXPECT_EQ(ReasonIn(status_), "INVALID_PARAMETER eigen_pairs");
+  request.clear_eigen_pairs();
+  Compute(request);
+  EXPECT_EQ(ReasonIn(status_), "INVALID_PARAMETER mesh");
+}
+
+}  // namespace
+}  // namespace marrow::testing
