@@ -24,16 +24,16 @@ CreaturePart Torso() {
   torso.inner_blend = 0.04;
   // Two columns side by side, from the hips over the waist to the shoulders.
   for (const double side : {-1., 1.}) {
-    const Vector3d hip(side * 0.075, 0.96, 0);
-    const Vector3d waist(side * 0.055, 1.14, 0.01);
-    const Vector3d breast(side * 0.09, 1.31, 0.01);
-    const Vector3d shoulder(side * 0.13, 1.4, 0);
-    torso.cones.push_back({hip, waist, 0.122, 0.108});
-    torso.cones.push_back({waist, breast, 0.108, 0.12});
-    torso.cones.push_back({breast, shoulder, 0.12, 0.08});
+    const Vector3d hip(side * 0.085, 0.96, 0);
+    const Vector3d waist(side * 0.075, 1.14, 0.01);
+    const Vector3d breast(side * 0.11, 1.31, 0.01);
+    const Vector3d shoulder(side * 0.15, 1.4, 0);
+    torso.cones.push_back({hip, waist, 0.135, 0.125});
+    torso.cones.push_back({waist, breast, 0.125, 0.14});
+    torso.cones.push_back({breast, shoulder, 0.14, 0.09});
   }
-  torso.cones.push_back({{-0.075, 0.96, 0}, {0.075, 0.96, 0}, 0.12, 0.12});
-  torso.cones.push_back({{-0.13, 1.4, 0}, {0.13, 1.4, 0}, 0.08, 0.08});
+  torso.cones.push_back({{-0.085, 0.96, 0}, {0.085, 0.96, 0}, 0.13, 0.13});
+  torso.cones.push_back({{-0.15, 1.4, 0}, {0.15, 1.4, 0}, 0.09, 0.09});
   return torso;
 }
 
@@ -56,7 +56,7 @@ void AddHead(Creature& creature) {
 }
 
 void AddArms(Creature& creature) {
-  const Vector3d shoulder(0.19, 1.39, 0);
+  const Vector3d shoulder(0.215, 1.385, 0);
   const auto at = [&](double distance, double front) -> Vector3d {
     return shoulder + distance * ArmLine() + front * Vector3d::UnitZ();
   };
@@ -77,8 +77,8 @@ void AddArms(Creature& creature) {
 
 void AddLegs(Creature& creature) {
   AddLimbPair("leg",
-              {{{0.105, 0.9, 0}, 0.1},
-               {{0.15, 0.51, 0.015}, 0.06},
+              {{{0.115, 0.89, 0}, 0.1},
+               {{0.155, 0.51, 0.015}, 0.064},
                {{0.185, 0.09, -0.025}, 0.04},
                {{0.205, 0.035, 0.13}, 0.032}},
               {{{0.155, 0.42, -0.012}, {0.168, 0.3, -0.025}, 0.058, 0.05},

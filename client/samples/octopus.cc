@@ -39,7 +39,7 @@ CreaturePart Body() {
   body.name = "body";
   body.inner_blend = 0.12;
   body.cones = {
-      {{0, 0.27, 0}, {0, 0.48, 0.02}, 0.4, 0.29},
+      {{0, 0.3, 0}, {0, 0.48, 0.02}, 0.46, 0.3},
       {{0, 0.48, 0.02}, {0, 0.95, -0.12}, 0.29, 0.42},
       {{0, 0.95, -0.12}, {0, 1.3, -0.28}, 0.42, 0.3},
       {{-0.2, 0.62, 0.2}, {-0.23, 0.67, 0.26}, 0.1, 0.085},  // eyes
@@ -54,7 +54,7 @@ void AddTentacle(int tentacle, Creature& creature) {
   };
   constexpr std::array<Station, kJoints + 1> kStations = {
       {{0.3, 0.17, 0.115},
-       {0.54, 0.1, 0.104},
+       {0.6, 0.11, 0.096},
        {0.78, 0.07, 0.092},
        {1.03, 0.06, 0.08},
        {1.27, 0.06, 0.068},
@@ -67,7 +67,7 @@ void AddTentacle(int tentacle, Creature& creature) {
         {station.out * Outward(tentacle) + station.up * Vector3d::UnitY(),
          station.radius});
   }
-  AddLimb(NameOf(tentacle), nodes, 0.08, creature);
+  AddLimb(NameOf(tentacle), nodes, 0.06, creature);
   // A tentacle has no elbows: it bends all along.
   for (CreatureJoint& joint : creature.joints) joint.width = 0.22;
 }

@@ -10,11 +10,11 @@ CreaturePart Torso() {
   torso.name = "torso";
   torso.inner_blend = 0.05;
   for (const double side : {-1., 1.}) {
-    const Vector3d hip(side * 0.05, 0.98, -0.42);
-    const Vector3d belly(side * 0.025, 0.99, 0.02);
-    const Vector3d chest(side * 0.04, 0.98, 0.36);
-    torso.cones.push_back({hip, belly, 0.165, 0.158});
-    torso.cones.push_back({belly, chest, 0.158, 0.19});
+    const Vector3d hip(side * 0.07, 0.97, -0.44);
+    const Vector3d belly(side * 0.05, 0.97, 0.0);
+    const Vector3d chest(side * 0.07, 0.96, 0.38);
+    torso.cones.push_back({hip, belly, 0.2, 0.19});
+    torso.cones.push_back({belly, chest, 0.19, 0.22});
   }
   return torso;
 }
@@ -37,18 +37,18 @@ void AddHead(Creature& creature) {
 
 void AddLegs(Creature& creature) {
   AddLimbPair("foreleg",
-              {{{0.12, 0.9, 0.38}, 0.105},
-               {{0.135, 0.62, 0.33}, 0.07},
-               {{0.14, 0.33, 0.37}, 0.045},
-               {{0.14, 0.09, 0.36}, 0.04},
-               {{0.14, 0.05, 0.45}, 0.042}},
+              {{{0.17, 0.85, 0.38}, 0.1},
+               {{0.18, 0.62, 0.34}, 0.08},
+               {{0.185, 0.38, 0.375}, 0.056},
+               {{0.185, 0.17, 0.365}, 0.05},
+               {{0.185, 0.12, 0.45}, 0.05}},
               {}, 0.06, creature);
   AddLimbPair("hindleg",
-              {{{0.115, 0.92, -0.44}, 0.135},
-               {{0.14, 0.63, -0.36}, 0.08},
-               {{0.145, 0.37, -0.54}, 0.046},
-               {{0.145, 0.09, -0.5}, 0.04},
-               {{0.145, 0.05, -0.41}, 0.042}},
+              {{{0.165, 0.86, -0.46}, 0.115},
+               {{0.18, 0.65, -0.39}, 0.09},
+               {{0.185, 0.43, -0.54}, 0.058},
+               {{0.185, 0.17, -0.5}, 0.05},
+               {{0.185, 0.12, -0.41}, 0.05}},
               {}, 0.06, creature);
 }
 
@@ -122,10 +122,10 @@ Creature MakeQuadruped() {
   AddHead(creature);
   AddLegs(creature);
   CreaturePart& tail = AddLimb("tail",
-                               {{{0, 1.05, -0.54}, 0.06},
-                                {{0, 1.06, -0.76}, 0.047},
-                                {{0, 0.92, -0.95}, 0.042},
-                                {{0, 0.78, -1.08}, 0.03}},
+                               {{{0, 1.08, -0.58}, 0.07},
+                                {{0, 1.12, -0.84}, 0.062},
+                                {{0, 1.0, -1.1}, 0.056},
+                                {{0, 0.82, -1.3}, 0.036}},
                                0.05, creature);
   tail.inner_blend = 0.04;
   creature.poses = {{"rest", {}}, Walk(), Gallop(), Graze(), Crouch()};
