@@ -59,8 +59,8 @@ void AddTentacle(int tentacle, Creature& creature) {
        {1.03, 0.06, 0.08},
        {1.27, 0.06, 0.068},
        {1.5, 0.07, 0.057},
-       {1.72, 0.09, 0.046},
-       {1.92, 0.12, 0.036}}};
+       {1.72, 0.09, 0.05},
+       {1.92, 0.12, 0.042}}};
   std::vector<LimbNode> nodes;
   for (const Station& station : kStations) {
     nodes.push_back(

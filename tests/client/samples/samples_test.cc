@@ -231,7 +231,7 @@ TEST_P(EverySample, HasPartsInOnePieceOfSensibleArea) {
       EXPECT_EQ(count, 1) << sample.part_names[part] << " at " << faces;
     }
     const std::vector<double> areas = AreaOfParts(sample);
-    EXPECT_THAT(areas, Each(::testing::Gt(0.03)));
+    EXPECT_THAT(areas, Each(::testing::Gt(0.04)));
     EXPECT_GT(areas[0], 0.2);
     EXPECT_LT(areas[0], 0.6);
   }
@@ -272,6 +272,20 @@ TEST(SamplesTest, KnowsTheLimbsOfItsCreatures) {
   EXPECT_THAT(parts_of("quadruped"), ::testing::SizeIs(7));
   EXPECT_THAT(parts_of("hand"), ::testing::SizeIs(6));
   EXPECT_THAT(parts_of("octopus"), ::testing::SizeIs(9));
+}
+
+// A limb that took a piece of the body would be greater than its like.
+TEST(SamplesTest, GivesLikeLimbsLikeAreas) {
+  for (const auto& [name, first, count] :
+       {std::tuple("humanoid", 2, 2), std::tuple("humanoid", 4, 2),
+        std::tuple("quadruped", 2, 2), std::tuple("quadruped", 4, 2),
+        std::tuple("octopus", 1, 8)}) {
+    const std::vector<double> areas =
+        AreaOfParts(MakeSample(name, "", 10000).value());
+    for (int i = first; i < first + count; ++i) {
+      EXPECT_NEAR(areas[i] / areas[first], 1, 0.05) << name << " part " << i;
+    }
+  }
 }
 
 // The left is +x when y is up and the creature looks along +z.
