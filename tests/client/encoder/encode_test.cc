@@ -1,5 +1,6 @@
 #include "client/encoder/encode.h"
 
+#include <draco/compression/decode.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -189,7 +190,9 @@ TEST_P(OrderTest, EveryFaceAndVertexComesBackAtEverySpeed) {
     const auto encoded = EncodeMesh(
         mesh, {.method = method, .speed = speed, .keep_attributes = true});
     ASSERT_TRUE(encoded.ok()) << encoded.status();
-    if (method != EncodeMethod::kAuto) EXPECT_EQ(encoded->method, method);
+    if (method != EncodeMethod::kAuto) {
+      EXPECT_EQ(encoded->method, method);
+    }
     const auto decoded = DecodeDraco(encoded->bytes, MeshLimits());
     ASSERT_TRUE(decoded.ok()) << decoded.status();
     ASSERT_EQ(decoded->faces.size(), encoded->order.NumDecodedFaces());
@@ -250,6 +253,46 @@ TEST(EncodeMeshTest, AHugeFanIsEncodedQuickly) {
   ASSERT_TRUE(encoded.ok());
   EXPECT_EQ(encoded->method, EncodeMethod::kSequential);
   EXPECT_LT(seconds.count(), 10);
+}
+
+// The numbers that tell the order stay at home.
+TEST(EncodeMeshTest, SendsPositionsAlone) {
+  for (const EncodeMethod method :
+       {EncodeMethod::kEdgebreaker, EncodeMethod::kSequential}) {
+    for (int speed = 0; speed <= 10; ++speed) {
+      for (const PolygonMesh& mesh : {Torus(false), Polygons(), NonManifold(),
+                                      Duplicates(), Degenerate(), Isolated()}) {
+        const auto encoded =
+            EncodeMesh(mesh, {.method = method, .speed = speed});
+        ASSERT_TRUE(encoded.ok()) << encoded.status();
+        draco::DecoderBuffer buffer;
+        buffer.Init(encoded->bytes.data(), encoded->bytes.size());
+        const auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
+        ASSERT_TRUE(decoded.ok());
+        EXPECT_EQ(decoded.value()->num_attributes(), 1) << speed;
+      }
+    }
+  }
+}
+
+// Draco does not decode more than three points a face.
+TEST(EncodeMeshTest, LeavesOutUnusedVerticesThatDracoCannotHold) {
+  PolygonMesh mesh;
+  for (int i = 0; i < 20; ++i) {
+    mesh.positions.push_back(
+        {static_cast<float>(i), static_cast<float>(i * i), 0});
+  }
+  mesh.AddFace(Corners3{17, 3, 9});
+  for (const EncodeMethod method :
+       {EncodeMethod::kAuto, EncodeMethod::kEdgebreaker,
+        EncodeMethod::kSequential}) {
+    const auto encoded = EncodeMesh(mesh, {.method = method});
+    ASSERT_TRUE(encoded.ok()) << encoded.status();
+    const auto decoded = DecodeDraco(encoded->bytes, MeshLimits());
+    ASSERT_TRUE(decoded.ok()) << decoded.status();
+    ExpectFacesComeBack(mesh, *decoded, encoded->order);
+    ExpectVerticesComeBack(mesh, *decoded, encoded->order);
+  }
 }
 
 TEST(EncodeMeshTest, SendsNoAttributesUnlessAsked) {
