@@ -2,11 +2,11 @@
 //
 // The sequential method keeps the order of points and faces. Edgebreaker does
 // not, and says nothing about it. So the mesh is encoded a second time with an
-// attribute that numbers the sites (places in space where vertices are); the
-// two payloads decode in the same order, which is checked, and the second,
-// which is thrown away, tells the site of each decoded point. A face follows
-// from its three sites. Were the order ever to differ, the payload with the
-// numbers would be the one that is sent.
+// attribute that numbers the sites (places in space where vertices are). Both
+// payloads decode to the same faces in the same order, though their points may
+// be numbered apart; so the second, which is thrown away, tells the sites of
+// each decoded face. That the positions agree, corner by corner, is checked;
+// did they not, the payload with the numbers would be the one that is sent.
 #include "client/encoder/encode.h"
 
 #include <draco/compression/decode.h>
@@ -30,10 +30,13 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "client/mesh_file/triangulate.h"
+#include "client/segmentation.h"
 #include "core/base/status_macros.h"
 
 namespace marrow {
 namespace {
+
+using client::kNone;
 
 using Corners = std::array<uint32_t, 3>;
 
@@ -75,6 +78,7 @@ struct Soup {
   std::vector<uint32_t> point_site;
   std::vector<uint32_t> point_uv;
   std::vector<uint32_t> point_normal;
+  bool has_unused_points = false;  // that no face has
 };
 
 // Triangles with the places of their corners in face_vertices, so that what a
@@ -115,47 +119,81 @@ CornerTriangles TriangulateAll(const PolygonMesh& mesh) {
   return all;
 }
 
-// Without attributes points are sites. With them they are numbered by corners,
-// and sites that no corner has come last.
+// Numbers points as they are first asked for.
+class PointTable {
+ public:
+  explicit PointTable(Soup* soup) : soup_(*soup) {}
+
+  // A site, a row of uvs and a row of normals.
+  uint32_t FindOrAdd(const Corners& key) {
+    const auto [entry, is_new] = points_.try_emplace(
+        key, static_cast<uint32_t>(soup_.point_site.size()));
+    if (is_new) {
+      soup_.point_site.push_back(key[0]);
+      soup_.point_uv.push_back(key[1]);
+      soup_.point_normal.push_back(key[2]);
+    }
+    return entry->second;
+  }
+
+ private:
+  Soup& soup_;
+  absl::flat_hash_map<Corners, uint32_t> points_;
+};
+
+std::vector<bool> UsedSites(const Soup& soup) {
+  std::vector<bool> used(soup.sites.rows.size(), false);
+  for (const Corners& corners : soup.site_corners) {
+    for (const uint32_t site : corners) used[site] = true;
+  }
+  return used;
+}
+
+// Points that no face has come last, unless there are so many that Draco would
+// not decode them: it allows three points a face.
+void AddUnusedPoints(const std::vector<bool>& used, PointTable* table,
+                     Soup* soup) {
+  const size_t unused =
+      static_cast<size_t>(std::count(used.begin(), used.end(), false));
+  if (soup->point_site.size() + unused > 3 * soup->faces.size()) return;
+  for (uint32_t s = 0; s < used.size(); ++s) {
+    if (!used[s]) table->FindOrAdd({s, 0, 0});
+  }
+  soup->has_unused_points = unused > 0;
+}
+
+// Without attributes points are numbered as sites are, with them by corners.
 void AddPoints(const PolygonMesh& mesh, const CornerTriangles& triangles,
                bool keep_attributes, Soup* soup) {
   const bool has_uvs = keep_attributes && !mesh.corner_uvs.empty();
   const bool has_normals = keep_attributes && !mesh.corner_normals.empty();
   if (has_uvs) soup->uvs = FindDistinct(mesh.corner_uvs);
   if (has_normals) soup->normals = FindDistinct(mesh.corner_normals);
-  absl::flat_hash_map<Corners, uint32_t> point_of_key;
-  std::vector<bool> has_point(soup->sites.rows.size(), false);
-  const auto find_or_add = [&](const Corners& key) {
-    const uint32_t next = static_cast<uint32_t>(soup->point_site.size());
-    const auto [entry, is_new] = point_of_key.try_emplace(key, next);
-    if (is_new) {
-      soup->point_site.push_back(key[0]);
-      soup->point_uv.push_back(key[1]);
-      soup->point_normal.push_back(key[2]);
-      has_point[key[0]] = true;
-    }
-    return entry->second;
-  };
-  if (!has_uvs && !has_normals) {
-    for (uint32_t s = 0; s < soup->sites.rows.size(); ++s) {
-      find_or_add({s, 0, 0});
-    }
-  }
   for (const Corners& triangle : triangles.corners) {
-    Corners points;
     Corners sites;
     for (int i = 0; i < 3; ++i) {
-      const uint32_t corner = triangle[i];
-      sites[i] = soup->sites.index[mesh.face_vertices[corner]];
-      points[i] = find_or_add({sites[i], has_uvs ? soup->uvs.index[corner] : 0,
-                               has_normals ? soup->normals.index[corner] : 0});
+      sites[i] = soup->sites.index[mesh.face_vertices[triangle[i]]];
     }
-    soup->faces.push_back(points);
     soup->site_corners.push_back(sites);
   }
-  for (uint32_t s = 0; s < soup->sites.rows.size(); ++s) {
-    if (!has_point[s]) find_or_add({s, 0, 0});
+  const std::vector<bool> used = UsedSites(*soup);
+  PointTable table(soup);
+  if (!has_uvs && !has_normals) {
+    for (uint32_t s = 0; s < used.size(); ++s) {
+      if (used[s]) table.FindOrAdd({s, 0, 0});
+    }
   }
+  for (size_t t = 0; t < triangles.corners.size(); ++t) {
+    Corners points;
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t corner = triangles.corners[t][i];
+      points[i] = table.FindOrAdd(
+          {soup->site_corners[t][i], has_uvs ? soup->uvs.index[corner] : 0,
+           has_normals ? soup->normals.index[corner] : 0});
+    }
+    soup->faces.push_back(points);
+  }
+  AddUnusedPoints(used, &table, soup);
 }
 
 bool KeptByEdgebreaker(const Corners& sites) {
@@ -174,13 +212,13 @@ bool IsQuickForEdgebreaker(const std::vector<uint64_t>& degrees,
 }
 
 bool SuitsEdgebreaker(const Soup& soup) {
+  if (soup.has_unused_points) return false;
   std::vector<uint64_t> degrees(soup.sites.rows.size(), 0);
   for (const Corners& sites : soup.site_corners) {
     if (!KeptByEdgebreaker(sites)) return false;
     for (const uint32_t site : sites) ++degrees[site];
   }
-  return std::find(degrees.begin(), degrees.end(), 0u) == degrees.end() &&
-         IsQuickForEdgebreaker(degrees, soup.site_corners.size());
+  return IsQuickForEdgebreaker(degrees, soup.site_corners.size());
 }
 
 // `values` has N numbers a row; `index` gives a point its row.
@@ -261,8 +299,8 @@ absl::StatusOr<std::string> RunEncoder(const Soup& soup,
 
 // What a payload decodes to, as far as the order goes.
 struct Decoded {
-  std::vector<Corners> faces;  // points
-  size_t num_points = 0;
+  std::vector<Corners> faces;                      // points
+  std::vector<std::array<uint32_t, 3>> positions;  // bits, by point
   std::vector<uint32_t> point_site;  // empty where sites are not numbered
 };
 
@@ -276,20 +314,48 @@ absl::StatusOr<Decoded> RunDecoder(const std::string& bytes) {
                      mesh.status().error_msg(), "); try another speed"));
   }
   Decoded decoded;
-  decoded.num_points = mesh.value()->num_points();
+  const uint32_t num_points = mesh.value()->num_points();
   for (uint32_t f = 0; f < mesh.value()->num_faces(); ++f) {
     const draco::Mesh::Face& face = mesh.value()->face(draco::FaceIndex(f));
     decoded.faces.push_back(
         {face[0].value(), face[1].value(), face[2].value()});
   }
+  decoded.positions.resize(num_points);
+  const draco::PointAttribute* positions =
+      mesh.value()->GetNamedAttribute(draco::GeometryAttribute::POSITION);
   const draco::PointAttribute* numbers =
       mesh.value()->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
-  for (uint32_t p = 0; numbers != nullptr && p < decoded.num_points; ++p) {
-    uint32_t site = 0;
-    numbers->GetMappedValue(draco::PointIndex(p), &site);
-    decoded.point_site.push_back(site);
+  if (numbers != nullptr) decoded.point_site.resize(num_points);
+  for (uint32_t p = 0; p < num_points; ++p) {
+    const draco::PointIndex point(p);
+    positions->GetMappedValue(point, &decoded.positions[p]);
+    if (numbers != nullptr) {
+      numbers->GetMappedValue(point, &decoded.point_site[p]);
+    }
   }
   return decoded;
+}
+
+// Gives the points of `plain` the sites of those in the same corners of
+// `numbered`. False where the two do not agree.
+bool TransferSites(const Decoded& numbered, Decoded* plain) {
+  if (numbered.faces.size() != plain->faces.size()) return false;
+  plain->point_site.assign(plain->positions.size(), kNone);
+  for (size_t f = 0; f < numbered.faces.size(); ++f) {
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t theirs = numbered.faces[f][i];
+      const uint32_t ours = plain->faces[f][i];
+      const uint32_t site = numbered.point_site[theirs];
+      uint32_t& known = plain->point_site[ours];
+      if (numbered.positions[theirs] != plain->positions[ours] ||
+          (known != kNone && known != site)) {
+        return false;
+      }
+      known = site;
+    }
+  }
+  return std::find(plain->point_site.begin(), plain->point_site.end(), kNone) ==
+         plain->point_site.end();
 }
 
 // A payload and the site of each point as it decodes.
@@ -306,17 +372,17 @@ absl::StatusOr<OrderedPayload> EncodeInOrder(const Soup& soup,
                           RunEncoder(soup, options, method, false));
   MARROW_ASSIGN_OR_RETURN(payload.decoded, RunDecoder(payload.bytes));
   if (payload.decoded.faces == soup.faces &&
-      payload.decoded.num_points == soup.point_site.size()) {
+      payload.decoded.positions.size() == soup.point_site.size()) {
     payload.decoded.point_site = soup.point_site;
     return payload;
   }
   MARROW_ASSIGN_OR_RETURN(std::string numbered_bytes,
                           RunEncoder(soup, options, method, true));
   MARROW_ASSIGN_OR_RETURN(Decoded numbered, RunDecoder(numbered_bytes));
-  const bool same_order = numbered.faces == payload.decoded.faces &&
-                          numbered.num_points == payload.decoded.num_points;
-  if (!same_order) payload.bytes = std::move(numbered_bytes);
-  payload.decoded = std::move(numbered);
+  if (!TransferSites(numbered, &payload.decoded)) {
+    payload.bytes = std::move(numbered_bytes);
+    payload.decoded = std::move(numbered);
+  }
   return payload;
 }
 

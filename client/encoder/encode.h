@@ -32,8 +32,10 @@ struct EncodedMesh {
 };
 
 // Polygons are triangulated and vertices at one position (to the bit) become
-// one; nothing else is changed. Edgebreaker drops triangles with two corners at
-// one position, and vertices without a face. Equal input gives equal bytes.
+// one; nothing else is changed, but that vertices without a face are left out
+// where the mesh has more than three vertices a face, which Draco cannot hold.
+// Edgebreaker drops triangles with two corners at one position, and vertices
+// without a face. Equal input gives equal bytes.
 //
 // Errors: INVALID_ARGUMENT where an option is out of range, no face has three
 // corners, or the method that was asked for cannot represent the mesh;

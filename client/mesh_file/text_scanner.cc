@@ -113,11 +113,6 @@ std::string_view TextScanner::NextTokenAcrossLines() {
   return token;
 }
 
-std::string_view TextScanner::RestOfLine() {
-  while (position_ < end_ && IsBlank(text_[position_])) ++position_;
-  return text_.substr(position_, end_ - position_);
-}
-
 absl::Status TextScanner::Error(const std::string& message) const {
   return absl::InvalidArgumentError(
       absl::StrCat(path_, ": line ", line_, ": ", message));

@@ -32,8 +32,6 @@ class TextScanner {
   std::string_view NextToken();
   // The next token, on this line or a later one; empty at the end of the text.
   std::string_view NextTokenAcrossLines();
-  // The rest of this line, leading blanks skipped.
-  std::string_view RestOfLine();
 
   // INVALID_ARGUMENT "PATH: line N: MESSAGE".
   absl::Status Error(const std::string& message) const;

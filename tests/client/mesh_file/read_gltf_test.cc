@@ -126,7 +126,7 @@ TEST(ReadGltfTest, AppliesMatricesAndRotations) {
 TEST(ReadGltfTest, ErrorsNameTheElementOfAPrimitive) {
   ExpectRefused("m.glb", OneMesh(Primitive(",\"indices\":3")),
                 {"mesh 0, primitive 0", "accessor 3", "beyond its buffer"});
-  ExpectRefused("m.glb", OneMesh(Primitive(",\"indices\":9")),
+  ExpectRefused("m.glb", OneMesh("{\"attributes\":{\"POSITION\":9}}"),
                 {"accessor 9 does not exist"});
   ExpectRefused("m.glb",
                 OneMesh("{\"attributes\":{\"POSITION\":4},\"indices\":1}"),

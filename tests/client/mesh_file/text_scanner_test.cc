@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -81,15 +80,6 @@ TEST(ParseFloatTest, RefusesOtherText) {
   for (const char* token : {"", "x", "1,5", "1.5x", "+-1", "--1", "0x10"}) {
     EXPECT_FALSE(ParseFloat(token, &value)) << token;
   }
-}
-
-TEST(ParseFloatTest, DoesNotHeedTheLocale) {
-  const std::string old = std::setlocale(LC_ALL, nullptr);
-  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) {
-    GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
-  }
-  EXPECT_EQ(Parsed("1.5"), 1.5f);
-  std::setlocale(LC_ALL, old.c_str());
 }
 
 TEST(QuotedTest, IsShortAndPrintable) {
