@@ -73,16 +73,27 @@ TEST(ShadingTest, TurnedOverFacesLookTheSame) {
             1e-4f);
 }
 
+// A sheet that rises by `rise` from the viewer's feet to the back.
+LabelledMesh MakeSheet(float rise) {
+  LabelledMesh sheet;
+  sheet.mesh.positions = {
+      {-1, -1, rise}, {1, -1, rise}, {1, 1, -rise}, {-1, 1, -rise}};
+  sheet.mesh.AddFace(std::vector<uint32_t>{0, 1, 2, 3});
+  sheet.labels = {0};
+  return sheet;
+}
+
 TEST(ShadingTest, HollowsAreDarker) {
-  LabelledMesh flat;
-  flat.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  flat.mesh.AddFace(std::vector<uint32_t>{0, 1, 2, 3});
-  flat.labels = {0};
-  LabelledMesh walled = flat;
-  AddBox({-0.9f, -0.9f, 0}, {-0.2f, 0.9f, 0.8f}, 0, walled);
-  AddBox({0.2f, -0.9f, 0}, {0.9f, 0.9f, 0.8f}, 0, walled);
+  LabelledMesh walled = MakeSheet(0);
+  AddBox({-0.9f, -0.9f, 0}, {-0.2f, 0.9f, 0.3f}, 0, walled);
+  AddBox({0.2f, -0.9f, 0}, {0.9f, 0.9f, 0.3f}, 0, walled);
   EXPECT_LT(Render(walled).At(32, 32).sum(),
-            0.95f * Render(flat).At(32, 32).sum());
+            0.95f * Render(MakeSheet(0)).At(32, 32).sum());
+}
+
+TEST(ShadingTest, AnOpenSlopeIsNotAHollow) {
+  EXPECT_GT(Render(MakeSheet(1)).At(32, 32).sum(),
+            1.05f * Render(MakeSheet(0)).At(32, 32).sum());
 }
 
 }  // namespace
