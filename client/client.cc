@@ -56,7 +56,6 @@ absl::Status ReadAll(CallGroup::Context& context,
   return FromRpcStatus(reader.Finish());
 }
 
-// The request's bytes on the wire are none: it asks for the server as a whole.
 // The answer's one field is an enum whose 1 is SERVING.
 bool IsServing(const grpc::ByteBuffer& response) {
   grpc::Slice slice;
@@ -160,7 +159,9 @@ absl::StatusOr<v1::GetCapabilitiesResponse> Client::GetCapabilities(
 
 absl::Status Client::CheckHealth(absl::Duration timeout) {
   CallGroup::Context context(calls_, absl::Now() + timeout);
-  const grpc::ByteBuffer request;
+  // A request without bytes asks for the server as a whole.
+  const grpc::Slice nothing;
+  const grpc::ByteBuffer request(&nothing, 1);
   grpc::ByteBuffer response;
   grpc::Status status;
   absl::Notification done;

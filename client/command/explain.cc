@@ -31,7 +31,12 @@ std::string Explain(const absl::Status& status) {
   const std::string field = FieldOf(status);
   const std::string option = OptionOf(field);
   if (!option.empty() && message.starts_with(field)) {
-    return option + message.substr(field.size());
+    message.replace(0, field.size(), option);
+    // "--kappa: is -1" reads better without the colon.
+    if (message.substr(option.size()).starts_with(": is ")) {
+      message.erase(option.size(), 1);
+    }
+    return message;
   }
   if (absl::IsDeadlineExceeded(status)) {
     return absl::StrCat("not done in time (", message,

@@ -156,16 +156,17 @@ absl::Status CheckStems(const std::vector<std::string>& inputs) {
   return absl::OkStatus();
 }
 
-absl::Status PrepareFolder(const std::string& folder) {
+absl::StatusOr<bool> PrepareFolder(const std::string& folder) {
   std::error_code error;
-  fs::create_directories(folder, error);
+  const bool is_new = fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error)) {
     return absl::PermissionDeniedError(
         absl::StrCat(folder, ": cannot be made or is no folder: ",
                      error ? error.message() : "a file has this name",
                      "; choose another one with -o"));
   }
-  return StagingFolder::Make(folder).status();
+  MARROW_RETURN_IF_ERROR(StagingFolder::Make(folder).status());
+  return is_new;
 }
 
 bool IsResultName(const std::string& stem, const std::string& name) {

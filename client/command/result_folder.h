@@ -18,8 +18,8 @@ std::string StemOf(const std::string& path);
 absl::Status CheckStems(const std::vector<std::string>& inputs);
 
 // Makes the folder where it is missing, and checks that files can be made in
-// it. Errors name it and say what to do.
-absl::Status PrepareFolder(const std::string& folder);
+// it. The value is whether it was missing. Errors name it and say what to do.
+absl::StatusOr<bool> PrepareFolder(const std::string& folder);
 
 struct ResultFile {
   std::string name;  // without folder

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -148,12 +150,18 @@ int RunSegment(const SegmentArguments& arguments) {
     return kExitUsage;
   }
   ServiceCall call(arguments.service);
-  absl::Status status = PrepareFolder(arguments.folder);
+  const absl::StatusOr<bool> is_new = PrepareFolder(arguments.folder);
+  absl::Status status = is_new.status();
   if (status.ok()) status = call.Connect();
-  if (!status.ok()) {
-    return call.ExitCode(TellFailure("", status, arguments.service.json));
+  const int code = call.ExitCode(
+      status.ok() ? SegmentRun(arguments, call).Run()
+                  : TellFailure("", status, arguments.service.json));
+  // A folder made for nothing goes; one with results in it cannot be removed.
+  std::error_code ignored;
+  if (code != kExitOk && is_new.value_or(false)) {
+    std::filesystem::remove(arguments.folder, ignored);
   }
-  return call.ExitCode(SegmentRun(arguments, call).Run());
+  return code;
 }
 
 }  // namespace marrow::client

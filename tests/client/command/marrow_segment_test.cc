@@ -1,0 +1,347 @@
+// `marrow segment`, run as a person runs it, with the service in the process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include "tests/testing/subprocess.h"
+
+namespace marrow {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using testing::Finished;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::ListFolder;
+using ::testing::Not;
+using testing::ProgramPath;
+using testing::ReadFile;
+using testing::RunProgram;
+using testing::Subprocess;
+using testing::TemporaryFolder;
+using testing::WriteFile;
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// The numbers after the counts of an OFF file without comments.
+struct Off {
+  std::vector<std::string> vertices;  // a line each
+  std::vector<std::vector<uint32_t>> faces;
+};
+
+Off ParseOff(const std::string& text) {
+  std::istringstream stream(text);
+  std::string word;
+  size_t vertices = 0;
+  size_t faces = 0;
+  stream >> word >> vertices >> faces >> word >> std::ws;
+  Off off;
+  off.vertices.resize(vertices);
+  for (std::string& line : off.vertices) std::getline(stream, line);
+  off.faces.resize(faces);
+  for (auto& face : off.faces) {
+    size_t corners = 0;
+    stream >> corners;
+    face.resize(corners);
+    for (uint32_t& corner : face) stream >> corner;
+  }
+  return off;
+}
+
+std::string Format(const Off& off) {
+  std::ostringstream text;
+  text << "OFF\n" << off.vertices.size() << " " << off.faces.size() << " 0\n";
+  for (const std::string& vertex : off.vertices) text << vertex << "\n";
+  for (const auto& face : off.faces) {
+    text << face.size();
+    for (uint32_t corner : face) text << " " << corner;
+    text << "\n";
+  }
+  return text.str();
+}
+
+class MarrowSegmentTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    shared_ = new TemporaryFolder;
+    const Finished made =
+        RunProgram({ProgramPath("marrow"), "sample", "octopus", "--faces",
+                    "5000", "-o", Sample()});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  static void TearDownTestSuite() { delete shared_; }
+  static std::string Sample() { return *shared_ / "octopus.off"; }
+
+  Finished Segment(std::vector<std::string> arguments) {
+    std::vector<std::string> command = {ProgramPath("marrow"), "segment", "-o",
+                                        Out()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return RunProgram(command);
+  }
+  std::string Out(const std::string& name = "") const {
+    return (folder_ / "out") + (name.empty() ? "" : "/" + name);
+  }
+
+  static TemporaryFolder* shared_;
+  TemporaryFolder folder_;
+};
+
+TemporaryFolder* MarrowSegmentTest::shared_ = nullptr;
+
+TEST_F(MarrowSegmentTest, WritesEveryFileOfTheContract) {
+  const Finished run = Segment({Sample(), "--levels", "2", "--png", "--parts"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, IsEmpty()) << "no progress where there is no terminal";
+  EXPECT_THAT(run.out, HasSubstr("segments at level 1"));
+  EXPECT_THAT(
+      ListFolder(Out()),
+      ElementsAre("octopus.json", "octopus.level-1.ply", "octopus.level-1.png",
+                  "octopus.level-1.seg", "octopus.level-2.ply",
+                  "octopus.level-2.png", "octopus.level-2.seg",
+                  "octopus.parts.obj", "octopus.seg"));
+  EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.level-2.seg")));
+  EXPECT_EQ(Lines(ReadFile(Out("octopus.seg"))).size(), 5000u);
+}
+
+TEST_F(MarrowSegmentTest, LabelsAreNodesOfTheTreeInTheJson) {
+  ASSERT_EQ(Segment({Sample()}).code, 0);
+  const json result = json::parse(ReadFile(Out("octopus.json")));
+  std::map<uint32_t, json> nodes;
+  for (const json& node : result["tree"]["nodes"]) nodes[node["id"]] = node;
+  ASSERT_TRUE(nodes.contains(0));
+  EXPECT_TRUE(nodes[0]["parent"].is_null());
+  for (const auto& [id, node] : nodes) {
+    for (uint32_t child : node["children"]) {
+      EXPECT_EQ(nodes[child]["parent"], id);
+    }
+    EXPECT_EQ(node["children"].empty(), node["stop_reason"] != "") << id;
+  }
+  for (const std::string& line : Lines(ReadFile(Out("octopus.level-2.seg")))) {
+    const uint32_t label = static_cast<uint32_t>(std::stoul(line));
+    ASSERT_TRUE(nodes.contains(label));
+    EXPECT_LE(nodes[label]["level"], 2);
+  }
+  EXPECT_EQ(result["skeletons"].size(), result["levels"].size());
+  EXPECT_EQ(result["report"]["faces"], 5000);
+  EXPECT_EQ(result["cache"]["outcome"], "miss");
+}
+
+TEST_F(MarrowSegmentTest, LevelsAreNested) {
+  ASSERT_EQ(Segment({Sample()}).code, 0);
+  const auto coarse = Lines(ReadFile(Out("octopus.level-1.seg")));
+  const auto fine = Lines(ReadFile(Out("octopus.level-2.seg")));
+  ASSERT_EQ(coarse.size(), fine.size());
+  std::map<std::string, std::string> parent;
+  for (size_t face = 0; face < fine.size(); ++face) {
+    EXPECT_EQ(parent.emplace(fine[face], coarse[face]).first->second,
+              coarse[face]);
+  }
+  EXPECT_GT(parent.size(), std::set(coarse.begin(), coarse.end()).size());
+}
+
+TEST_F(MarrowSegmentTest, FewerLevelsLeaveNothingOfADeeperRun) {
+  ASSERT_EQ(Segment({Sample(), "--png", "--parts"}).code, 0);
+  ASSERT_EQ(Segment({Sample(), "--levels", "1"}).code, 0);
+  EXPECT_THAT(ListFolder(Out()),
+              ElementsAre("octopus.json", "octopus.level-1.ply",
+                          "octopus.level-1.seg", "octopus.seg"));
+  EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.level-1.seg")));
+}
+
+TEST_F(MarrowSegmentTest, ARenumberedFileGetsTheSameLabelAFace) {
+  const Off off = ParseOff(ReadFile(Sample()));
+  Off turned;
+  turned.vertices.assign(off.vertices.rbegin(), off.vertices.rend());
+  turned.faces.assign(off.faces.rbegin(), off.faces.rend());
+  const uint32_t last = static_cast<uint32_t>(off.vertices.size() - 1);
+  for (auto& face : turned.faces) {
+    for (uint32_t& corner : face) corner = last - corner;
+    std::rotate(face.begin(), face.begin() + 1, face.end());
+  }
+  WriteFile(folder_ / "turned.off", Format(turned));
+  ASSERT_EQ(Segment({Sample(), folder_ / "turned.off"}).code, 0);
+  auto labels = Lines(ReadFile(Out("turned.seg")));
+  std::reverse(labels.begin(), labels.end());
+  EXPECT_EQ(labels, Lines(ReadFile(Out("octopus.seg"))));
+}
+
+// Faces 2f and 2f + 1 of a polygon file: pairs of triangles that share an edge
+// become quads; the labels are one a polygon, in the polygons' order.
+TEST_F(MarrowSegmentTest, PolygonsGetOneLabelEachInTheFilesOrder) {
+  Off off = ParseOff(ReadFile(Sample()));
+  std::vector<bool> used(off.faces.size(), false);
+  std::map<std::pair<uint32_t, uint32_t>, size_t> face_of_edge;
+  for (size_t f = 0; f < off.faces.size(); ++f) {
+    for (size_t i = 0; i < 3; ++i) {
+      face_of_edge[{off.faces[f][i], off.faces[f][(i + 1) % 3]}] = f;
+    }
+  }
+  Off mixed{.vertices = off.vertices, .faces = {}};
+  std::vector<size_t> triangle_of;  // of a polygon: one of its triangles
+  for (size_t f = 0; f < off.faces.size(); ++f) {
+    if (used[f]) continue;
+    used[f] = true;
+    const auto& t = off.faces[f];
+    const size_t g = face_of_edge.at({t[1], t[0]});
+    mixed.faces.push_back(t);
+    triangle_of.push_back(f);
+    if (used[g]) continue;
+    used[g] = true;
+    for (uint32_t corner : off.faces[g]) {
+      if (corner != t[0] && corner != t[1]) {
+        mixed.faces.back() = {t[0], corner, t[1], t[2]};
+      }
+    }
+  }
+  WriteFile(folder_ / "mixed.off", Format(mixed));
+  ASSERT_EQ(Segment({Sample(), folder_ / "mixed.off"}).code, 0);
+  const auto labels = Lines(ReadFile(Out("mixed.level-1.seg")));
+  const auto expected = Lines(ReadFile(Out("octopus.level-1.seg")));
+  ASSERT_EQ(labels.size(), mixed.faces.size());
+  // The diagonals differ, and with them the operator a little; the parts
+  // are the same.
+  std::map<std::pair<std::string, std::string>, size_t> agree;
+  for (size_t f = 0; f < labels.size(); ++f) {
+    ++agree[{labels[f], expected[triangle_of[f]]}];
+  }
+  std::map<std::string, size_t> best;
+  for (const auto& [pair, count] : agree) {
+    best[pair.first] = std::max(best[pair.first], count);
+  }
+  const size_t same = std::accumulate(
+      best.begin(), best.end(), size_t{0},
+      [](size_t sum, const auto& entry) { return sum + entry.second; });
+  EXPECT_GT(best.size(), 1u);
+  EXPECT_GT(static_cast<double>(same),
+            .95 * static_cast<double>(labels.size()));
+}
+
+TEST_F(MarrowSegmentTest, OneFileFailsAndTheOthersAreDone) {
+  WriteFile(folder_ / "bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n");
+  WriteFile(folder_ / "empty.obj", "");
+  const Finished run = Segment({folder_ / "bad.off", folder_ / "missing.off",
+                                Sample(), folder_ / "empty.obj"});
+  EXPECT_EQ(run.code, 1);
+  for (const char* name : {"bad.off", "missing.off", "empty.obj"}) {
+    EXPECT_THAT(run.err, HasSubstr(folder_ / name));
+  }
+  EXPECT_THAT(run.out, HasSubstr("4 files: 1 segmented, 3 failed"));
+  EXPECT_THAT(ListFolder(Out()), ::testing::Contains("octopus.seg"));
+  for (const std::string& name : ListFolder(Out())) {
+    EXPECT_TRUE(name.starts_with("octopus.")) << name;
+  }
+}
+
+TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
+  const std::vector<std::array<std::string, 2>> cases = {
+      {"--kappa", "-1"},    {"--kappa", "nan"}, {"--pairs", "0"},
+      {"--pairs", "1001"},  {"--delta", "1"},   {"--epsilon", "2"},
+      {"--tolerance", "9"}, {"--levels", "0"},  {"--levels", "9"},
+      {"--pairs", "x"},     {"--timeout", "0"}, {"--quantize", "31"}};
+  for (const auto& [option, value] : cases) {
+    const Finished run = Segment({Sample(), option, value});
+    EXPECT_EQ(run.code, 2) << option << " " << value << run.err;
+    EXPECT_THAT(run.err, HasSubstr(option)) << value;
+    EXPECT_FALSE(std::filesystem::exists(Out())) << option;
+  }
+}
+
+TEST_F(MarrowSegmentTest, TwoInputsWithOneStemAreRefusedBeforeAnyWork) {
+  const Finished run = Segment({folder_ / "octopus.ply", Sample()});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("same files"));
+  EXPECT_FALSE(std::filesystem::exists(Out()));
+}
+
+TEST_F(MarrowSegmentTest, TheFolderMustBeOne) {
+  WriteFile(Out(), "a file");
+  const Finished run = Segment({Sample()});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr(Out()));
+  EXPECT_EQ(ReadFile(Out()), "a file");
+}
+
+TEST_F(MarrowSegmentTest, AFailedWriteLeavesTheEarlierResults) {
+  ASSERT_EQ(Segment({Sample(), "--levels", "1"}).code, 0);
+  const std::string before = ReadFile(Out("octopus.json"));
+  std::filesystem::create_directories(Out("octopus.level-2.ply/x"));
+  const auto names = ListFolder(Out());
+  const Finished run = Segment({Sample()});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("octopus.level-2.ply"));
+  EXPECT_EQ(ListFolder(Out()), names);
+  EXPECT_EQ(ReadFile(Out("octopus.json")), before);
+}
+
+TEST_F(MarrowSegmentTest, JsonIsALineAnEventInOrder) {
+  const Finished run = Segment({Sample(), "--json", "--levels", "2"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  std::vector<std::string> names;
+  for (const std::string& line : Lines(run.out)) {
+    const json event = json::parse(line);
+    if (event["event"] == "progress") continue;
+    names.push_back(event["event"]);
+    if (event["event"] == "completed") {
+      for (const std::string output : event["outputs"]) {
+        EXPECT_TRUE(std::filesystem::exists(output)) << output;
+      }
+    }
+  }
+  EXPECT_THAT(names, ElementsAre("accepted", "mesh_report", "level", "skeleton",
+                                 "level", "skeleton", "completed", "summary"));
+}
+
+TEST_F(MarrowSegmentTest, QuietTellsNothing) {
+  const Finished run = Segment({Sample(), "--quiet", "--levels", "1"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.out, IsEmpty());
+  EXPECT_THAT(run.err, IsEmpty());
+}
+
+TEST_F(MarrowSegmentTest, ASingleTriangleIsOneSegment) {
+  WriteFile(folder_ / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Finished run = Segment({folder_ / "one.off"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 segment at level 1"));
+  EXPECT_EQ(ReadFile(Out("one.seg")), "0\n");
+}
+
+TEST_F(MarrowSegmentTest, ATimeoutEndsTheCallAndLeavesNothing) {
+  const Finished run = Segment({Sample(), "--timeout", "0.001"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("--timeout"));
+  EXPECT_FALSE(std::filesystem::exists(Out()));
+}
+
+TEST_F(MarrowSegmentTest, CtrlCEndsSoonAndLeavesNothing) {
+  const std::string large = folder_ / "large.off";
+  ASSERT_EQ(RunProgram({ProgramPath("marrow"), "sample", "octopus", "--faces",
+                        "50000", "-o", large})
+                .code,
+            0);
+  Subprocess process({ProgramPath("marrow"), "segment", large, "-o", Out(),
+                      "--pairs", "1000", "--json"});
+  ASSERT_TRUE(process.WaitForOutput("\"stage\":\"spectrum\""));
+  process.Signal(SIGINT);
+  EXPECT_EQ(process.Wait(), 130);
+  EXPECT_THAT(process.Out(), Not(HasSubstr("\"completed\"")));
+  EXPECT_FALSE(std::filesystem::exists(Out()));
+}
+
+}  // namespace
+}  // namespace marrow

@@ -1,0 +1,161 @@
+// `marrow` against a real `marrowd`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/testing/subprocess.h"
+
+namespace marrow {
+namespace {
+
+using nlohmann::json;
+using testing::Finished;
+using ::testing::HasSubstr;
+using testing::ListFolder;
+using testing::ProgramPath;
+using testing::ReadFile;
+using testing::RunProgram;
+using testing::Subprocess;
+using testing::TemporaryFolder;
+
+class MarrowServerTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    daemon_ = new Subprocess(
+        {ProgramPath("marrowd"), "--port", "0", "--log-level", "off"});
+    const std::string words = "listening on ";
+    ASSERT_TRUE(daemon_->WaitForOutput("\n"));
+    const std::string line = daemon_->Out();
+    address_ = line.substr(line.find(words) + words.size());
+    address_.pop_back();
+    ASSERT_EQ(Sample("humanoid", "10000", "h.off").code, 0);
+  }
+  static void TearDownTestSuite() {
+    daemon_->Signal(SIGTERM);
+    EXPECT_EQ(daemon_->Wait(), 0);
+    delete daemon_;
+    delete folder_;
+  }
+
+  static Finished Sample(const std::string& name, const std::string& faces,
+                         const std::string& file) {
+    return RunProgram({ProgramPath("marrow"), "sample", name, "--faces", faces,
+                       "-o", *folder_ / file});
+  }
+  static std::string File(const std::string& name) { return *folder_ / name; }
+
+  static TemporaryFolder* folder_;
+  static Subprocess* daemon_;
+  static std::string address_;
+};
+
+TemporaryFolder* MarrowServerTest::folder_ = nullptr;
+Subprocess* MarrowServerTest::daemon_ = nullptr;
+std::string MarrowServerTest::address_;
+
+TEST_F(MarrowServerTest, HealthSaysServing) {
+  EXPECT_EQ(
+      RunProgram({ProgramPath("marrow"), "health", "--server", address_}).code,
+      0);
+  EXPECT_EQ(RunProgram({ProgramPath("marrow"), "health"},
+                       {"MARROW_SERVER=" + address_})
+                .code,
+            0);
+}
+
+TEST_F(MarrowServerTest, AServerAndTheEmbeddedServiceGiveTheSameFiles) {
+  const Finished remote =
+      RunProgram({ProgramPath("marrow"), "segment", File("h.off"), "-o",
+                  File("remote"), "--server", address_});
+  ASSERT_EQ(remote.code, 0) << remote.err;
+  ASSERT_EQ(RunProgram({ProgramPath("marrow"), "segment", File("h.off"), "-o",
+                        File("embedded")})
+                .code,
+            0);
+  const std::vector<std::string> names = ListFolder(File("remote"));
+  EXPECT_EQ(names.size(), 8u);
+  ASSERT_EQ(ListFolder(File("embedded")), names);
+  for (const std::string& name : names) {
+    const std::string a = ReadFile(File("remote/" + name));
+    const std::string b = ReadFile(File("embedded/" + name));
+    if (!name.ends_with(".json")) {
+      EXPECT_EQ(a, b) << name;
+      continue;
+    }
+    json first = json::parse(a);
+    json second = json::parse(b);
+    for (json* each : {&first, &second}) {
+      each->erase("timings");
+      each->erase("cache");
+    }
+    EXPECT_EQ(first, second);
+  }
+}
+
+TEST_F(MarrowServerTest, TheSecondCallNeedsNoSolver) {
+  const std::vector<std::string> command = {ProgramPath("marrow"),
+                                            "segment",
+                                            File("h.off"),
+                                            "-o",
+                                            File("twice"),
+                                            "--pairs",
+                                            "60",
+                                            "--server",
+                                            address_};
+  ASSERT_EQ(RunProgram(command).code, 0);
+  const std::string labels = ReadFile(File("twice/h.seg"));
+  const Finished second = RunProgram(command);
+  EXPECT_THAT(second.out, HasSubstr("spectrum kept"));
+  const json result = json::parse(ReadFile(File("twice/h.json")));
+  EXPECT_EQ(result["cache"]["outcome"], "hit");
+  EXPECT_EQ(result["cache"]["solver_runs"], 0);
+  EXPECT_EQ(ReadFile(File("twice/h.seg")), labels);
+}
+
+// A rough sheet, whose payload is above the 1 MiB that goes inline.
+TEST_F(MarrowServerTest, ALargeMeshIsUploadedOnceAndThenNamed) {
+  constexpr int kSide = 400;
+  std::ostringstream off;
+  off << "OFF\n" << kSide * kSide << " " << (kSide - 1) * (kSide - 1) << " 0\n";
+  uint32_t noise = 1;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    noise = noise * 1664525u + 1013904223u;
+    off << i % kSide << " " << i / kSide << " " << noise * 1e-9 << "\n";
+  }
+  for (int i = 0; i + kSide < kSide * kSide; ++i) {
+    if (i % kSide == kSide - 1) continue;
+    off << "4 " << i << " " << i + 1 << " " << i + kSide + 1 << " " << i + kSide
+        << "\n";
+  }
+  marrow::testing::WriteFile(File("sheet.off"), off.str());
+  const std::vector<std::string> command = {ProgramPath("marrow"),
+                                            "inspect",
+                                            File("sheet.off"),
+                                            "--json",
+                                            "--server",
+                                            address_};
+  const Finished first = RunProgram(command);
+  ASSERT_EQ(first.code, 0) << first.err;
+  const json report = json::parse(first.out);
+  EXPECT_EQ(report["report"]["faces"], 2 * (kSide - 1) * (kSide - 1));
+  EXPECT_EQ(report["report"]["boundary_loops"], 1);
+  EXPECT_EQ(json::parse(RunProgram(command).out)["report"], report["report"]);
+}
+
+TEST_F(MarrowServerTest, ADracoFileIsLabelledInItsOwnOrder) {
+  ASSERT_EQ(Sample("humanoid", "10000", "h.drc").code, 0);
+  const Finished run =
+      RunProgram({ProgramPath("marrow"), "segment", File("h.drc"), "-o",
+                  File("drc"), "--server", address_});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string labels = ReadFile(File("drc/h.seg"));
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), '\n'), 10000);
+}
+
+}  // namespace
+}  // namespace marrow

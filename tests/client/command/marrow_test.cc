@@ -1,0 +1,216 @@
+// The smaller subcommands of `marrow`, run as a person runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/testing/subprocess.h"
+
+namespace marrow {
+namespace {
+
+using nlohmann::json;
+using testing::Finished;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::ListFolder;
+using testing::ProgramPath;
+using testing::ReadFile;
+using testing::RunProgram;
+using testing::TemporaryFolder;
+using testing::WriteFile;
+
+Finished Marrow(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), ProgramPath("marrow"));
+  return RunProgram(arguments);
+}
+
+constexpr char kTetrahedron[] =
+    "OFF\n5 4 0\n0 0 0\n9 9 9\n1 0 0\n0 1 0\n0 0 1\n"
+    "3 0 3 2\n3 0 2 4\n3 0 4 3\n3 2 3 4\n";
+
+TEST(MarrowTest, HelpTeaches) {
+  const Finished help = Marrow({"--help"});
+  EXPECT_EQ(help.code, 0);
+  for (const char* word :
+       {"Examples:", "Exit codes:", "MARROW_SERVER", "130", "segment",
+        "inspect", "spectrum", "sample", "health"}) {
+    EXPECT_THAT(help.out, HasSubstr(word));
+  }
+  const Finished segment = Marrow({"segment", "--help"});
+  for (const char* word : {"STEM.level-N.ply", "--kappa", "--tolerance",
+                           "--threads", "--quantize"}) {
+    EXPECT_THAT(segment.out, HasSubstr(word));
+  }
+}
+
+TEST(MarrowTest, TellsItsVersion) {
+  const Finished run = Marrow({"--version"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.out, ::testing::MatchesRegex("marrow [0-9.]+\n"));
+}
+
+TEST(MarrowTest, ACommandLineThatMakesNoSenseIsAUsageError) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"segment"},
+                                             {"frobnicate"},
+                                             {"segment", "--frob", "x.off"},
+                                             {"sample"},
+                                             {"sample", "humanoid"},
+                                             {"inspect"}}) {
+    const Finished run = Marrow(arguments);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_FALSE(run.err.empty());
+    EXPECT_THAT(run.out, IsEmpty());
+  }
+}
+
+TEST(MarrowTest, InspectReportsOnAMesh) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const Finished person = Marrow({"inspect", folder / "t.off"});
+  EXPECT_EQ(person.code, 0) << person.err;
+  EXPECT_THAT(person.out, HasSubstr("components"));
+  const json result =
+      json::parse(Marrow({"inspect", folder / "t.off", "--json"}).out);
+  EXPECT_EQ(result["report"]["faces"], 4);
+  EXPECT_EQ(result["report"]["vertices"], 4);
+  EXPECT_EQ(result["report"]["euler_characteristic"], 2);
+  EXPECT_EQ(result["geometry_digest"].get<std::string>().size(), 64u);
+}
+
+TEST(MarrowTest, InspectTellsWhatIsWrong) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "nan.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n");
+  WriteFile(folder / "text.off", "hello\n");
+  WriteFile(folder / "x.drc", "DRACOgarbage");
+  WriteFile(folder / "points.off", "OFF\n1 0 0\n0 0 0\n");
+  for (const char* name :
+       {"nan.off", "text.off", "x.drc", "points.off", "none.off"}) {
+    const Finished run = Marrow({"inspect", folder / name});
+    EXPECT_EQ(run.code, 1) << name;
+    EXPECT_THAT(run.err, HasSubstr(folder / name));
+    EXPECT_THAT(run.out, IsEmpty());
+  }
+  const Finished as_json = Marrow({"inspect", folder / "nan.off", "--json"});
+  const json error = json::parse(as_json.out);
+  EXPECT_EQ(error["event"], "error");
+  EXPECT_EQ(error["reason"], "MESH_REJECTED");
+}
+
+TEST(MarrowTest, SpectrumPrintsEigenvaluesAscending) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const Finished run = Marrow({"spectrum", folder / "t.off", "-k", "2"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  std::istringstream lines(run.out);
+  std::vector<double> values;
+  for (double value; lines >> value;) values.push_back(value);
+  ASSERT_EQ(values.size(), 3u);
+  EXPECT_NEAR(values[0], 0, 1e-9);
+  EXPECT_GT(values[1], 0);
+  EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+  const json result = json::parse(
+      Marrow({"spectrum", folder / "t.off", "-k", "2", "--json"}).out);
+  EXPECT_EQ(result["eigenvalues"].get<std::vector<double>>(), values);
+}
+
+// Five vertices in the file, of which the second has no face.
+TEST(MarrowTest, SpectrumWritesEigenvectorsInTheFilesOrder) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  ASSERT_EQ(
+      Marrow({"spectrum", folder / "t.off", "-k", "2", "-o", folder / "v.npy"})
+          .code,
+      0);
+  const std::string npy = ReadFile(folder / "v.npy");
+  ASSERT_EQ(npy.substr(0, 6), "\x93NUMPY");
+  EXPECT_THAT(npy, HasSubstr("'shape': (5, 3)"));
+  const size_t begin = npy.find('\n') + 1;
+  ASSERT_EQ(begin % 64, 0u);
+  ASSERT_EQ(npy.size() - begin, 15 * sizeof(double));
+  std::vector<double> values(15);
+  std::copy_n(npy.data() + begin, npy.size() - begin,
+              reinterpret_cast<char*>(values.data()));
+  // The constant eigenvector: 1 over the root of the area.
+  const double area = 1.5 + std::sqrt(3.0) / 2;
+  for (size_t vertex : {0, 2, 3, 4}) {
+    EXPECT_NEAR(std::abs(values[vertex]), 1 / std::sqrt(area), 1e-9);
+  }
+  EXPECT_TRUE(std::isnan(values[1]));
+}
+
+TEST(MarrowTest, SpectrumRefusesImpossibleNumbers) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const Finished run = Marrow({"spectrum", folder / "t.off", "-k", "0"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--pairs"));
+}
+
+TEST(MarrowTest, SamplesAreListedAndMade) {
+  const Finished list = Marrow({"sample", "--list"});
+  EXPECT_EQ(list.code, 0);
+  for (const char* name : {"humanoid", "quadruped", "hand", "octopus"}) {
+    EXPECT_THAT(list.out, HasSubstr(name));
+  }
+  const TemporaryFolder folder;
+  const Finished made =
+      Marrow({"sample", "hand", "--pose", "grasp", "--faces", "5000", "-o",
+              folder / "hand.ply", "--parts", folder / "hand.seg"});
+  EXPECT_EQ(made.code, 0) << made.err;
+  const std::string parts = ReadFile(folder / "hand.seg");
+  EXPECT_EQ(std::count(parts.begin(), parts.end(), '\n'), 5000);
+}
+
+TEST(MarrowTest, ImpossibleSamplesAreUsageErrors) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "x.off";
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{
+           {"sample", "dragon", "-o", out},
+           {"sample", "hand", "--pose", "flying", "-o", out},
+           {"sample", "hand", "--faces", "10", "-o", out},
+           {"sample", "hand", "-o", folder / "x.txt"},
+           {"sample", "hand", "-o", folder / "x.drc", "--parts",
+            folder / "x.seg"}}) {
+    EXPECT_EQ(Marrow(arguments).code, 2) << arguments[1];
+  }
+  EXPECT_THAT(ListFolder(folder.path()), IsEmpty());
+}
+
+TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const auto start = std::chrono::steady_clock::now();
+  const Finished run = Marrow({"segment", folder / "t.off", "-o",
+                               folder / "out", "--server", "127.0.0.1:1"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("127.0.0.1:1"));
+  EXPECT_THAT(run.err, HasSubstr("marrowd"));
+  EXPECT_EQ(Marrow({"health", "--server", "127.0.0.1:1"}).code, 3);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST(MarrowTest, AFullDiskIsNoSuccess) {
+  const Finished run = RunProgram(
+      {"/bin/sh", "-c", ProgramPath("marrow") + " sample --list >/dev/full"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("standard output"));
+}
+
+TEST(MarrowTest, AReaderThatWentAwayIsNoFailure) {
+  const Finished run =
+      RunProgram({"/bin/sh", "-c",
+                  "{ sleep 0.2; " + ProgramPath("marrow") +
+                      " sample --list; echo $? >&2; } | true"});
+  EXPECT_EQ(run.err, "0\n");
+}
+
+}  // namespace
+}  // namespace marrow
