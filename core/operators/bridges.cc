@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <nanoflann.hpp>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
@@ -10,29 +11,16 @@
 namespace marrow {
 namespace {
 
-// Positions scaled to the unit box: squared distances of large coordinates
-// would overflow.
-struct UnitCloud {
-  Positions points;
-
-  explicit UnitCloud(const TriangleMesh& mesh) : points(mesh.positions) {
-    const Eigen::RowVector3d low = points.colwise().minCoeff();
-    points.rowwise() -= low;
-    points /= points.maxCoeff();
-  }
-  size_t kdtree_get_point_count() const { return points.rows(); }
-  double kdtree_get_pt(size_t i, size_t d) const { return points(i, d); }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
-    nanoflann::L2_Simple_Adaptor<double, UnitCloud>, UnitCloud, 3>;
+// In the unit box: squared distances of large coordinates would overflow.
+Positions UnitPoints(const TriangleMesh& mesh) {
+  Positions points = mesh.positions;
+  const Eigen::RowVector3d low = points.colwise().minCoeff();
+  points.rowwise() -= low;
+  return points / points.maxCoeff();
+}
 
 struct Bridge {
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = std::numeric_limits<double>::infinity();  // squared
   std::array<uint32_t, 2> ends{};
 
   friend bool operator<(const Bridge& a, const Bridge& b) {
@@ -40,39 +28,117 @@ struct Bridge {
   }
 };
 
-// A result set for nanoflann: the nearest point of another body, given the best
-// that the own body has found so far.
-class NearestElsewhere {
+// A balanced k-d tree whose subtrees know when they are of one body, so that a
+// body's search for its neighbours does not walk through the body itself: two
+// large bodies far apart would cost the square of their size.
+class BodyTree {
  public:
-  NearestElsewhere(uint32_t from, const std::vector<uint32_t>& body,
-                   Bridge& best)
-      : from_(from), body_(body), best_(best) {}
+  explicit BodyTree(Positions points)
+      : points_(std::move(points)), order_(points_.rows()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    Build(0, static_cast<uint32_t>(order_.size()));
+  }
 
-  bool full() const { return true; }
-  size_t size() const { return 1; }
-  double worstDist() const {
-    // Equal distances are looked at too: the least pair of vertices wins.
-    return std::nextafter(best_.distance,
-                          std::numeric_limits<double>::infinity());
+  // `body` must outlive the searches.
+  void SetBodies(const std::vector<uint32_t>& body) {
+    body_ = &body;
+    // Children stand behind their parents.
+    for (size_t i = nodes_.size(); i-- > 0;)
+      nodes_[i].body = nodes_[i].right == 0
+                           ? CommonBody(nodes_[i])
+                           : Common(nodes_[i + 1].body,
+                                    nodes_[nodes_[i].right].body);
   }
-  bool addPoint(double distance, uint32_t index) {
-    if (body_[index] == body_[from_]) return true;
-    Bridge bridge{distance, {from_, index}};
-    if (bridge.ends[0] > bridge.ends[1])
-      std::swap(bridge.ends[0], bridge.ends[1]);
-    best_ = std::min(best_, bridge);
-    return true;
-  }
+
+  // Lowers `best` to the least bridge from the vertex to another body. Equal
+  // distances are looked at too: the least pair of vertices wins.
+  void Improve(uint32_t from, Bridge& best) const { Search(0, from, best); }
 
  private:
-  uint32_t from_;
-  const std::vector<uint32_t>& body_;
-  Bridge& best_;
+  static constexpr uint32_t kLeafSize = 8;
+
+  struct Node {
+    Eigen::RowVector3d low, high;
+    uint32_t begin, end;      // in order_
+    uint32_t right = 0;       // the left child is the next node; 0 for a leaf
+    uint32_t body = kNoIndex;  // kNoIndex where there are several
+  };
+
+  uint32_t Build(uint32_t begin, uint32_t end) {
+    const uint32_t id = static_cast<uint32_t>(nodes_.size());
+    Node node{points_.row(order_[begin]), points_.row(order_[begin]), begin,
+              end};
+    for (uint32_t i = begin; i < end; ++i) {
+      node.low = node.low.cwiseMin(points_.row(order_[i]));
+      node.high = node.high.cwiseMax(points_.row(order_[i]));
+    }
+    nodes_.push_back(node);
+    if (end - begin <= kLeafSize) return id;
+    int axis;
+    (node.high - node.low).maxCoeff(&axis);
+    const uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle,
+                     order_.begin() + end, [&](uint32_t a, uint32_t b) {
+                       return points_(a, axis) < points_(b, axis);
+                     });
+    Build(begin, middle);
+    const uint32_t right = Build(middle, end);
+    nodes_[id].right = right;
+    return id;
+  }
+
+  static uint32_t Common(uint32_t a, uint32_t b) {
+    return a == b ? a : kNoIndex;
+  }
+  uint32_t CommonBody(const Node& leaf) const {
+    uint32_t common = (*body_)[order_[leaf.begin]];
+    for (uint32_t i = leaf.begin; i < leaf.end; ++i)
+      common = Common(common, (*body_)[order_[i]]);
+    return common;
+  }
+
+  // Both distances add up in one order, so rounding cannot put a point nearer
+  // than its box.
+  static double Square(const Eigen::RowVector3d& d) {
+    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  }
+  double BoxDistance(const Node& node, uint32_t from) const {
+    const Eigen::RowVector3d p = points_.row(from);
+    return Square((node.low - p).cwiseMax(p - node.high).cwiseMax(0.0));
+  }
+
+  void Search(uint32_t id, uint32_t from, Bridge& best) const {
+    const Node& node = nodes_[id];
+    if (node.body == (*body_)[from] || BoxDistance(node, from) > best.distance)
+      return;
+    if (node.right == 0) {
+      for (uint32_t i = node.begin; i < node.end; ++i)
+        Consider(from, order_[i], best);
+      return;
+    }
+    uint32_t near = id + 1, far = node.right;
+    if (BoxDistance(nodes_[far], from) < BoxDistance(nodes_[near], from))
+      std::swap(near, far);
+    Search(near, from, best);
+    Search(far, from, best);
+  }
+
+  void Consider(uint32_t from, uint32_t to, Bridge& best) const {
+    if ((*body_)[to] == (*body_)[from]) return;
+    const Eigen::RowVector3d apart = points_.row(to) - points_.row(from);
+    best = std::min(best, Bridge{Square(apart),
+                                 {std::min(from, to), std::max(from, to)}});
+  }
+
+  Positions points_;
+  std::vector<uint32_t> order_;
+  std::vector<Node> nodes_;
+  const std::vector<uint32_t>* body_ = nullptr;
 };
 
 // Every body but the largest looks for its nearest neighbour: the largest is
 // found by others, and its many vertices need not search.
-std::vector<Bridge> NearestBodies(const KdTree& tree, const UnitCloud& cloud,
+std::vector<Bridge> NearestBodies(const BodyTree& tree,
                                   const std::vector<uint32_t>& body) {
   const uint32_t n = static_cast<uint32_t>(body.size());
   std::vector<uint32_t> size(n, 0);
@@ -80,12 +146,8 @@ std::vector<Bridge> NearestBodies(const KdTree& tree, const UnitCloud& cloud,
   const uint32_t largest = static_cast<uint32_t>(
       std::max_element(size.begin(), size.end()) - size.begin());
   std::vector<Bridge> best(n);
-  for (uint32_t v = 0; v < n; ++v) {
-    if (body[v] == largest) continue;
-    NearestElsewhere result(v, body, best[body[v]]);
-    tree.findNeighbors(result, cloud.points.row(v).data(),
-                       nanoflann::SearchParams());
-  }
+  for (uint32_t v = 0; v < n; ++v)
+    if (body[v] != largest) tree.Improve(v, best[body[v]]);
   return best;
 }
 
@@ -100,12 +162,12 @@ std::vector<std::array<uint32_t, 2>> FindBridges(const TriangleMesh& mesh) {
   std::vector<std::array<uint32_t, 2>> bridges;
   if (bodies == 1) return bridges;
 
-  const UnitCloud cloud(mesh);
-  const KdTree tree(3, cloud);
+  BodyTree tree(UnitPoints(mesh));
   std::vector<uint32_t> body(n);
   while (bodies > 1) {
     for (uint32_t v = 0; v < n; ++v) body[v] = sets.Find(v);
-    std::vector<Bridge> best = NearestBodies(tree, cloud, body);
+    tree.SetBodies(body);
+    std::vector<Bridge> best = NearestBodies(tree, body);
     std::sort(best.begin(), best.end());
     for (const Bridge& bridge : best) {
       if (bridge.ends[0] == bridge.ends[1]) break;  // nothing was found

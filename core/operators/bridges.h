@@ -13,7 +13,9 @@ namespace marrow {
 
 // Pairs of vertices that join the components into one: a minimum spanning tree
 // of the components by the distance of their nearest vertices (Boruvka's
-// rounds over a k-d tree). Empty for a mesh in one piece. Deterministic.
+// rounds over a k-d tree). Of equally near pairs the least counts. Empty for a
+// mesh in one piece. Deterministic. About O(n log^2 n) where, as in a canonical
+// mesh, no two vertices share their place.
 std::vector<std::array<uint32_t, 2>> FindBridges(const TriangleMesh& mesh);
 
 }  // namespace marrow

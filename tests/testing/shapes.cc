@@ -342,6 +342,12 @@ TriangleMesh WithSlivers(const TriangleMesh& mesh, uint32_t step,
   return MeshOf(points, std::move(faces));
 }
 
+std::string TestNameOf(const NamedMesh& shape) {
+  std::string name = shape.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
 std::vector<NamedMesh> AllShapes() {
   return {
       {"triangle", SingleTriangle()},

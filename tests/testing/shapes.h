@@ -48,6 +48,8 @@ struct NamedMesh {
   std::string name;
   TriangleMesh mesh;
 };
+// The name as googletest wants it for a parameter.
+std::string TestNameOf(const NamedMesh& shape);
 // Small ones of all of the above: what any mesh must survive.
 std::vector<NamedMesh> AllShapes();
 

@@ -1,6 +1,7 @@
 #include "core/operators/bridges.h"
 
 #include <algorithm>
+#include <chrono>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -94,12 +95,26 @@ TEST(BridgesTest, JoinBodiesAtAnyScale) {
   EXPECT_EQ(FindBridges(Scaled(mesh, 0x1p66)), bridges);
 }
 
-// Ten thousand bodies at one place: quadratic work would not end in time.
-TEST(BridgesTest, ManyBodiesAtOnePlaceStayQuick) {
+// Two large bodies far apart: whoever searches his own body first looks at
+// 10^9 pairs here.
+TEST(BridgesTest, LargeBodiesFarApartStayQuick) {
+  const TriangleMesh sphere = Icosphere(6);
+  TriangleMesh mesh = Apart(sphere, sphere);
+  for (uint32_t v = sphere.NumVertices(); v < mesh.NumVertices(); ++v)
+    mesh.positions(v, 0) += 1000;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(FindBridges(mesh).size(), 1u);
+  // Takes 0.1 s, and a sanitizer ten times that.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST(BridgesTest, ManyBodiesStayQuick) {
   std::mt19937 random(1);
-  TriangleMesh mesh = Cloud(10'000, random, [] { return 0.0; });
-  mesh.positions(0, 0) = 1;
-  EXPECT_EQ(FindBridges(mesh).size(), 9'999u);
+  const TriangleMesh mesh =
+      Cloud(20'000, random, [&] { return random() * 0x1p-32; });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(FindBridges(mesh).size(), 19'999u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 }  // namespace

@@ -81,10 +81,7 @@ TEST_P(LaplacianOfAnyShape, HasAreaSharesThatSumToOne) {
 INSTANTIATE_TEST_SUITE_P(Shapes, LaplacianOfAnyShape,
                          ::testing::ValuesIn(AllShapes()),
                          [](const auto& info) {
-                           std::string name = info.param.name;
-                           for (char& c : name)
-                             if (c == ' ') c = '_';
-                           return name;
+                           return TestNameOf(info.param);
                          });
 
 TEST(LaplacianTest, HasCotangentWeights) {

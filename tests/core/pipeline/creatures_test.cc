@@ -1,0 +1,77 @@
+// Whole runs over posed creatures.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "client/samples/samples.h"
+#include "tests/testing/invariants.h"
+#include "tests/testing/run.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+TriangleMesh Creature(const std::string& name) {
+  const Sample sample = MakeSample(name, "", kMinSampleFaces).value();
+  TriangleMesh mesh;
+  mesh.positions.resize(sample.mesh.NumVertices(), 3);
+  for (size_t v = 0; v < sample.mesh.NumVertices(); ++v)
+    for (int i = 0; i < 3; ++i)
+      mesh.positions(v, i) = sample.mesh.positions[v][i];
+  for (size_t f = 0; f < sample.mesh.NumFaces(); ++f) {
+    const auto face = sample.mesh.Face(f);
+    mesh.faces.push_back({face[0], face[1], face[2]});
+  }
+  return mesh;
+}
+
+SegmentationOptions TwoLevels() {
+  SegmentationOptions options;
+  options.eigen_pairs = 100;
+  options.levels = 2;
+  return options;
+}
+
+class CreatureTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
+  const TriangleMesh mesh = Creature(GetParam());
+  const RecordingSink run = RunOn(mesh, TwoLevels());
+  ASSERT_EQ(run.levels.size(), 2u);
+  const Adjacency adjacency(run.mesh.mesh);
+  ExpectSoundTree(run.mesh.mesh, adjacency, run.tree, run.mesh.report.area,
+                  true);
+  for (const auto& level : run.levels)
+    ExpectSoundSkeleton(run.mesh.mesh, adjacency, run.tree, level.level,
+                        level.skeleton);
+
+  const Renumbering renumbering = Renumber(mesh, 9);
+  const RecordingSink other = RunOn(renumbering.mesh, TwoLevels());
+  ExpectSameTree(other.tree, run.tree);
+  for (size_t i = 0; i < 2; ++i)
+    for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+      ASSERT_EQ(other.levels[i].face_labels[f],
+                run.levels[i].face_labels[renumbering.old_face[f]]);
+}
+
+TEST_P(CreatureTest, RotationAndScaleKeepThePartition) {
+  const TriangleMesh mesh = Creature(GetParam());
+  const RecordingSink run = RunOn(mesh, TwoLevels());
+  const RecordingSink other = RunOn(
+      Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), TwoLevels());
+  ASSERT_EQ(other.levels.size(), run.levels.size());
+  for (size_t i = 0; i < run.levels.size(); ++i)
+    EXPECT_LE(RandIndexDifference(other.levels[i].face_labels,
+                                  run.levels[i].face_labels),
+              0.01)
+        << "level " << i + 1;
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, CreatureTest,
+                         ::testing::Values("humanoid", "quadruped", "hand",
+                                           "octopus"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace marrow
