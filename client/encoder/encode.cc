@@ -15,21 +15,18 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "absl/container/flat_hash_map.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "client/mesh_file/triangulate.h"
+#include "client/encoder/point_mesh.h"
 #include "client/segmentation.h"
 #include "core/base/status_macros.h"
 
@@ -38,188 +35,8 @@ namespace {
 
 using client::kNone;
 
-using Corners = std::array<uint32_t, 3>;
-
 // Draco counts corners in 32 bits, some of them signed.
 constexpr size_t kMaxTriangles = size_t{1} << 29;
-
-// Rows of floats with equal ones (to the bit) put together, in order of first
-// appearance.
-template <size_t N>
-struct DistinctRows {
-  std::vector<std::array<float, N>> rows;
-  std::vector<uint32_t> index;  // an input row -> its place in `rows`
-};
-
-template <size_t N>
-DistinctRows<N> FindDistinct(const std::vector<std::array<float, N>>& input) {
-  DistinctRows<N> distinct;
-  distinct.index.reserve(input.size());
-  absl::flat_hash_map<std::array<uint32_t, N>, uint32_t> seen;
-  seen.reserve(input.size());
-  for (const std::array<float, N>& row : input) {
-    const auto [entry, is_new] =
-        seen.try_emplace(std::bit_cast<std::array<uint32_t, N>>(row),
-                         static_cast<uint32_t>(distinct.rows.size()));
-    if (is_new) distinct.rows.push_back(row);
-    distinct.index.push_back(entry->second);
-  }
-  return distinct;
-}
-
-// The mesh as Draco sees it: a point is a site with the texture coordinates and
-// the normal that a corner has there.
-struct Soup {
-  DistinctRows<3> sites;  // of the file's vertices
-  DistinctRows<2> uvs;    // of corners; empty where not sent
-  DistinctRows<3> normals;
-  std::vector<Corners> faces;         // points
-  std::vector<Corners> site_corners;  // sites, parallel to faces
-  std::vector<uint32_t> point_site;
-  std::vector<uint32_t> point_uv;
-  std::vector<uint32_t> point_normal;
-  bool has_unused_points = false;  // that no face has
-};
-
-// Triangles with the places of their corners in face_vertices, so that what a
-// corner carries is found again.
-struct CornerTriangles {
-  std::vector<uint32_t> begin = {0};  // by face
-  std::vector<Corners> corners;
-};
-
-CornerTriangles TriangulateAll(const PolygonMesh& mesh) {
-  // A stand-in whose "vertices" are the corners themselves.
-  PolygonMesh face;
-  std::vector<Corners> cut;
-  CornerTriangles all;
-  all.begin.reserve(mesh.NumFaces() + 1);
-  for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    const std::span<const uint32_t> vertices = mesh.Face(f);
-    const uint32_t first = mesh.face_offsets[f];
-    if (vertices.size() == 3) {
-      all.corners.push_back({first, first + 1, first + 2});
-    } else if (vertices.size() > 3) {
-      face.positions.clear();
-      face.face_vertices.clear();
-      for (const uint32_t v : vertices) {
-        face.face_vertices.push_back(
-            static_cast<uint32_t>(face.positions.size()));
-        face.positions.push_back(mesh.positions[v]);
-      }
-      face.face_offsets = {0, static_cast<uint32_t>(vertices.size())};
-      cut.clear();
-      Triangulate(face, 0, &cut);
-      for (const Corners& c : cut) {
-        all.corners.push_back({first + c[0], first + c[1], first + c[2]});
-      }
-    }
-    all.begin.push_back(static_cast<uint32_t>(all.corners.size()));
-  }
-  return all;
-}
-
-// Numbers points as they are first asked for.
-class PointTable {
- public:
-  explicit PointTable(Soup* soup) : soup_(*soup) {}
-
-  // A site, a row of uvs and a row of normals.
-  uint32_t FindOrAdd(const Corners& key) {
-    const auto [entry, is_new] = points_.try_emplace(
-        key, static_cast<uint32_t>(soup_.point_site.size()));
-    if (is_new) {
-      soup_.point_site.push_back(key[0]);
-      soup_.point_uv.push_back(key[1]);
-      soup_.point_normal.push_back(key[2]);
-    }
-    return entry->second;
-  }
-
- private:
-  Soup& soup_;
-  absl::flat_hash_map<Corners, uint32_t> points_;
-};
-
-std::vector<bool> UsedSites(const Soup& soup) {
-  std::vector<bool> used(soup.sites.rows.size(), false);
-  for (const Corners& corners : soup.site_corners) {
-    for (const uint32_t site : corners) used[site] = true;
-  }
-  return used;
-}
-
-// Points that no face has come last, unless there are so many that Draco would
-// not decode them: it allows three points a face.
-void AddUnusedPoints(const std::vector<bool>& used, PointTable* table,
-                     Soup* soup) {
-  const size_t unused =
-      static_cast<size_t>(std::count(used.begin(), used.end(), false));
-  if (soup->point_site.size() + unused > 3 * soup->faces.size()) return;
-  for (uint32_t s = 0; s < used.size(); ++s) {
-    if (!used[s]) table->FindOrAdd({s, 0, 0});
-  }
-  soup->has_unused_points = unused > 0;
-}
-
-// Without attributes points are numbered as sites are, with them by corners.
-void AddPoints(const PolygonMesh& mesh, const CornerTriangles& triangles,
-               bool keep_attributes, Soup* soup) {
-  const bool has_uvs = keep_attributes && !mesh.corner_uvs.empty();
-  const bool has_normals = keep_attributes && !mesh.corner_normals.empty();
-  if (has_uvs) soup->uvs = FindDistinct(mesh.corner_uvs);
-  if (has_normals) soup->normals = FindDistinct(mesh.corner_normals);
-  for (const Corners& triangle : triangles.corners) {
-    Corners sites;
-    for (int i = 0; i < 3; ++i) {
-      sites[i] = soup->sites.index[mesh.face_vertices[triangle[i]]];
-    }
-    soup->site_corners.push_back(sites);
-  }
-  const std::vector<bool> used = UsedSites(*soup);
-  PointTable table(soup);
-  if (!has_uvs && !has_normals) {
-    for (uint32_t s = 0; s < used.size(); ++s) {
-      if (used[s]) table.FindOrAdd({s, 0, 0});
-    }
-  }
-  for (size_t t = 0; t < triangles.corners.size(); ++t) {
-    Corners points;
-    for (int i = 0; i < 3; ++i) {
-      const uint32_t corner = triangles.corners[t][i];
-      points[i] = table.FindOrAdd(
-          {soup->site_corners[t][i], has_uvs ? soup->uvs.index[corner] : 0,
-           has_normals ? soup->normals.index[corner] : 0});
-    }
-    soup->faces.push_back(points);
-  }
-  AddUnusedPoints(used, &table, soup);
-}
-
-bool KeptByEdgebreaker(const Corners& sites) {
-  return sites[0] != sites[1] && sites[1] != sites[2] && sites[2] != sites[0];
-}
-
-// Edgebreaker pairs the half-edges at a vertex by comparing all with all.
-bool IsQuickForEdgebreaker(const std::vector<uint64_t>& degrees,
-                           size_t num_triangles) {
-  constexpr uint64_t kFixedComparisons = 100'000'000;
-  constexpr uint64_t kComparisonsPerTriangle = 100;
-  uint64_t comparisons = 0;
-  for (const uint64_t degree : degrees) comparisons += degree * degree;
-  return comparisons <=
-         kFixedComparisons + kComparisonsPerTriangle * num_triangles;
-}
-
-bool SuitsEdgebreaker(const Soup& soup) {
-  if (soup.has_unused_points) return false;
-  std::vector<uint64_t> degrees(soup.sites.rows.size(), 0);
-  for (const Corners& sites : soup.site_corners) {
-    if (!KeptByEdgebreaker(sites)) return false;
-    for (const uint32_t site : sites) ++degrees[site];
-  }
-  return IsQuickForEdgebreaker(degrees, soup.site_corners.size());
-}
 
 // `values` has N numbers a row; `index` gives a point its row.
 template <typename T, size_t N>
@@ -242,41 +59,42 @@ int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type,
   return id;
 }
 
-void AddSiteNumbers(const Soup& soup, draco::Mesh* mesh) {
-  std::vector<std::array<uint32_t, 1>> numbers(soup.sites.rows.size());
+void AddSiteNumbers(const PointMesh& points, draco::Mesh* mesh) {
+  std::vector<std::array<uint32_t, 1>> numbers(points.sites.rows.size());
   for (uint32_t s = 0; s < numbers.size(); ++s) numbers[s] = {s};
   AddAttribute(draco::GeometryAttribute::GENERIC, draco::DT_UINT32, numbers,
-               soup.point_site, mesh);
+               points.point_site, mesh);
 }
 
-std::unique_ptr<draco::Mesh> ToDraco(const Soup& soup, bool number_sites) {
+std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points,
+                                     bool number_sites) {
   auto mesh = std::make_unique<draco::Mesh>();
-  mesh->set_num_points(static_cast<uint32_t>(soup.point_site.size()));
-  mesh->SetNumFaces(soup.faces.size());
-  for (uint32_t f = 0; f < soup.faces.size(); ++f) {
-    const Corners& c = soup.faces[f];
+  mesh->set_num_points(static_cast<uint32_t>(points.point_site.size()));
+  mesh->SetNumFaces(points.faces.size());
+  for (uint32_t f = 0; f < points.faces.size(); ++f) {
+    const Corners& c = points.faces[f];
     mesh->SetFace(draco::FaceIndex(f),
                   {draco::PointIndex(c[0]), draco::PointIndex(c[1]),
                    draco::PointIndex(c[2])});
   }
   AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32,
-               soup.sites.rows, soup.point_site, mesh.get());
-  if (!soup.uvs.rows.empty()) {
+               points.sites.rows, points.point_site, mesh.get());
+  if (!points.uvs.rows.empty()) {
     AddAttribute(draco::GeometryAttribute::TEX_COORD, draco::DT_FLOAT32,
-                 soup.uvs.rows, soup.point_uv, mesh.get());
+                 points.uvs.rows, points.point_uv, mesh.get());
   }
-  if (!soup.normals.rows.empty()) {
+  if (!points.normals.rows.empty()) {
     AddAttribute(draco::GeometryAttribute::NORMAL, draco::DT_FLOAT32,
-                 soup.normals.rows, soup.point_normal, mesh.get());
+                 points.normals.rows, points.point_normal, mesh.get());
   }
-  if (number_sites) AddSiteNumbers(soup, mesh.get());
+  if (number_sites) AddSiteNumbers(points, mesh.get());
   return mesh;
 }
 
-absl::StatusOr<std::string> RunEncoder(const Soup& soup,
+absl::StatusOr<std::string> RunEncoder(const PointMesh& points,
                                        const EncodeOptions& options,
                                        EncodeMethod method, bool number_sites) {
-  const std::unique_ptr<draco::Mesh> mesh = ToDraco(soup, number_sites);
+  const std::unique_ptr<draco::Mesh> mesh = ToDraco(points, number_sites);
   draco::ExpertEncoder encoder(*mesh);
   encoder.SetSpeedOptions(options.speed, options.speed);
   encoder.SetEncodingMethod(method == EncodeMethod::kEdgebreaker
@@ -364,20 +182,20 @@ struct OrderedPayload {
   Decoded decoded;
 };
 
-absl::StatusOr<OrderedPayload> EncodeInOrder(const Soup& soup,
+absl::StatusOr<OrderedPayload> EncodeInOrder(const PointMesh& points,
                                              const EncodeOptions& options,
                                              EncodeMethod method) {
   OrderedPayload payload;
   MARROW_ASSIGN_OR_RETURN(payload.bytes,
-                          RunEncoder(soup, options, method, false));
+                          RunEncoder(points, options, method, false));
   MARROW_ASSIGN_OR_RETURN(payload.decoded, RunDecoder(payload.bytes));
-  if (payload.decoded.faces == soup.faces &&
-      payload.decoded.positions.size() == soup.point_site.size()) {
-    payload.decoded.point_site = soup.point_site;
+  if (payload.decoded.faces == points.faces &&
+      payload.decoded.positions.size() == points.point_site.size()) {
+    payload.decoded.point_site = points.point_site;
     return payload;
   }
   MARROW_ASSIGN_OR_RETURN(std::string numbered_bytes,
-                          RunEncoder(soup, options, method, true));
+                          RunEncoder(points, options, method, true));
   MARROW_ASSIGN_OR_RETURN(Decoded numbered, RunDecoder(numbered_bytes));
   if (!TransferSites(numbered, &payload.decoded)) {
     payload.bytes = std::move(numbered_bytes);
@@ -406,7 +224,7 @@ KeyedFaces SortByKey(const std::vector<Corners>& site_corners) {
 
 // Decoded face -> triangle, by the sites of the corners; of equal ones each is
 // taken once, in order. Nothing where a decoded face has no triangle left.
-std::optional<std::vector<uint32_t>> MatchFaces(const Soup& soup,
+std::optional<std::vector<uint32_t>> MatchFaces(const PointMesh& points,
                                                 const Decoded& decoded) {
   std::vector<Corners> decoded_sites;
   decoded_sites.reserve(decoded.faces.size());
@@ -415,7 +233,7 @@ std::optional<std::vector<uint32_t>> MatchFaces(const Soup& soup,
                              decoded.point_site[face[1]],
                              decoded.point_site[face[2]]});
   }
-  const KeyedFaces ours = SortByKey(soup.site_corners);
+  const KeyedFaces ours = SortByKey(points.site_corners);
   std::vector<uint32_t> triangles(decoded.faces.size());
   size_t next = 0;
   for (const auto& [key, face] : SortByKey(decoded_sites)) {
@@ -426,21 +244,21 @@ std::optional<std::vector<uint32_t>> MatchFaces(const Soup& soup,
   return triangles;
 }
 
-absl::StatusOr<EncodedMesh> EncodeSoup(const PolygonMesh& mesh,
-                                       const CornerTriangles& triangles,
-                                       const Soup& soup,
-                                       const EncodeOptions& options,
-                                       EncodeMethod method) {
+absl::StatusOr<EncodedMesh> EncodePoints(const PolygonMesh& mesh,
+                                         const CornerTriangles& triangles,
+                                         const PointMesh& points,
+                                         const EncodeOptions& options,
+                                         EncodeMethod method) {
   MARROW_ASSIGN_OR_RETURN(OrderedPayload payload,
-                          EncodeInOrder(soup, options, method));
+                          EncodeInOrder(points, options, method));
   std::optional<std::vector<uint32_t>> triangle_of_face =
-      MatchFaces(soup, payload.decoded);
+      MatchFaces(points, payload.decoded);
   if (!triangle_of_face.has_value()) {
     return absl::InternalError(
         "a decoded face is none of the mesh; try the sequential method");
   }
   PayloadOrigin origin;
-  origin.site_of_vertex = soup.sites.index;
+  origin.site_of_vertex = points.sites.index;
   origin.triangle_begin = triangles.begin;
   origin.triangles.reserve(triangles.corners.size());
   for (const Corners& c : triangles.corners) {
@@ -489,23 +307,23 @@ absl::StatusOr<EncodedMesh> EncodeChecked(const PolygonMesh& mesh,
         absl::StrCat("the mesh has ", triangles.corners.size(),
                      " triangles, more than Draco can hold; simplify it"));
   }
-  Soup soup;
-  soup.sites = FindDistinct(mesh.positions);
-  AddPoints(mesh, triangles, options.keep_attributes, &soup);
-  if (!IsFinite(soup.sites.rows)) options.quantization_bits = 0;
+  const PointMesh points =
+      BuildPointMesh(mesh, triangles, options.keep_attributes);
+  if (!IsFinite(points.sites.rows)) options.quantization_bits = 0;
 
   if (options.method != EncodeMethod::kAuto) {
-    return EncodeSoup(mesh, triangles, soup, options, options.method);
+    return EncodePoints(mesh, triangles, points, options, options.method);
   }
-  if (SuitsEdgebreaker(soup)) {
-    absl::StatusOr<EncodedMesh> encoded =
-        EncodeSoup(mesh, triangles, soup, options, EncodeMethod::kEdgebreaker);
+  if (SuitsEdgebreaker(points)) {
+    absl::StatusOr<EncodedMesh> encoded = EncodePoints(
+        mesh, triangles, points, options, EncodeMethod::kEdgebreaker);
     if (encoded.ok() &&
         encoded->order.NumDecodedFaces() == triangles.corners.size()) {
       return encoded;
     }
   }
-  return EncodeSoup(mesh, triangles, soup, options, EncodeMethod::kSequential);
+  return EncodePoints(mesh, triangles, points, options,
+                      EncodeMethod::kSequential);
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// A polygon mesh as Draco takes it: triangles over points, where a point is a
+// site with what a corner carries there.
+#ifndef MARROW_CLIENT_ENCODER_POINT_MESH_H_
+#define MARROW_CLIENT_ENCODER_POINT_MESH_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "client/polygon_mesh.h"
+
+namespace marrow {
+
+using Corners = std::array<uint32_t, 3>;
+
+// Rows of floats with equal ones (to the bit) put together, in order of first
+// appearance.
+template <size_t N>
+struct DistinctRows {
+  std::vector<std::array<float, N>> rows;
+  std::vector<uint32_t> index;  // an input row -> its place in `rows`
+};
+
+// Triangles with the places of their corners in face_vertices, so that what a
+// corner carries is found again.
+struct CornerTriangles {
+  std::vector<uint32_t> begin = {0};  // by face
+  std::vector<Corners> corners;
+};
+
+struct PointMesh {
+  DistinctRows<3> sites;  // of the file's vertices
+  DistinctRows<2> uvs;    // of corners; empty where not sent
+  DistinctRows<3> normals;
+  std::vector<Corners> faces;         // points
+  std::vector<Corners> site_corners;  // sites, parallel to faces
+  std::vector<uint32_t> point_site;
+  std::vector<uint32_t> point_uv;
+  std::vector<uint32_t> point_normal;
+  bool has_unused_points = false;  // that no face has
+};
+
+// Triangles of every face, in the order of faces; a face with fewer than three
+// corners has none. Deterministic.
+CornerTriangles TriangulateAll(const PolygonMesh& mesh);
+
+// Points are numbered in an order that the file alone decides. Those that no
+// face has come last; where there are more than three points a face, which
+// Draco does not decode, they are left out.
+PointMesh BuildPointMesh(const PolygonMesh& mesh,
+                         const CornerTriangles& triangles,
+                         bool keep_attributes);
+
+// Whether edgebreaker keeps every triangle and point, and is quick.
+bool SuitsEdgebreaker(const PointMesh& mesh);
+
+}  // namespace marrow
+
+#endif  // MARROW_CLIENT_ENCODER_POINT_MESH_H_
