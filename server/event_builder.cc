@@ -103,8 +103,7 @@ v1::Joint ToJoint(const Joint& joint) {
   message.set_kind(joint.articulation ? v1::JOINT_KIND_ARTICULATION
                                       : v1::JOINT_KIND_SEGMENT);
   SetVector(joint.position, message.mutable_position());
-  message.mutable_segments()->Add(joint.segments.begin(),
-                                  joint.segments.end());
+  message.mutable_segments()->Add(joint.segments.begin(), joint.segments.end());
   return message;
 }
 
@@ -230,9 +229,9 @@ void LevelEvents::AddLastSplits(const SegmentTree& tree,
   }
 }
 
-std::vector<v1::SegmentEvent> LabelEvents(
-    uint32_t level, v1::LabelDomain domain,
-    const std::vector<uint32_t>& labels) {
+std::vector<v1::SegmentEvent> LabelEvents(uint32_t level,
+                                          v1::LabelDomain domain,
+                                          const std::vector<uint32_t>& labels) {
   constexpr size_t kLabelsAChunk = kChunkBytes / sizeof(uint32_t);
   std::vector<v1::SegmentEvent> events;
   for (size_t i = 0; i < labels.size(); i += kLabelsAChunk) {

@@ -26,9 +26,10 @@ namespace marrow {
 // used after; at most one write is under way, and `current_` is what it
 // writes; Finish() waits for that write.
 template <typename Event>
-class StreamState final : public JobListener,
-                          public Tickable,
-                          public std::enable_shared_from_this<StreamState<Event>> {
+class StreamState final
+    : public JobListener,
+      public Tickable,
+      public std::enable_shared_from_this<StreamState<Event>> {
  public:
   using Reactor = grpc::ServerWriteReactor<Event>;
   using Table = JobTable<Event>;

@@ -106,10 +106,11 @@ class Job : public Tickable {
     Notify();
   }
 
-  // Ends the job with an error.
+  // Ends the job with an error, unless it has ended.
   void Fail(absl::Status error) {
     {
       absl::MutexLock lock(&mu_);
+      if (end_.has_value()) return;
       end_ = std::move(error);
     }
     Notify();

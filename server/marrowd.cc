@@ -90,8 +90,7 @@ void AddFlags(CLI::App& app, Flags& flags) {
   app.add_option("--listen", flags.options.listen,
                  "HOST:PORT to listen on; port 0 takes a free one")
       ->capture_default_str();
-  app.add_option("--port", flags.port,
-                 "Short for --listen 127.0.0.1:PORT")
+  app.add_option("--port", flags.port, "Short for --listen 127.0.0.1:PORT")
       ->check(CLI::Range(0, 65535))
       ->excludes("--listen");
   AddLimits(app, flags.options);
@@ -100,8 +99,8 @@ void AddFlags(CLI::App& app, Flags& flags) {
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   app.add_option("--log-level", flags.log_level, "Least level that is logged")
-      ->check(CLI::IsMember(
-          {"trace", "debug", "info", "warning", "error", "off"}))
+      ->check(
+          CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
   app.add_flag("--no-reflection", flags.no_reflection,
                "Does not tell callers the services by gRPC reflection");
@@ -156,10 +155,10 @@ int Serve(const Flags& flags, JsonLog& log) {
   log.Write({LogLevel::kInfo, "listening", {{"address", address}}, {}});
 
   const int signal = WaitForStopSignal();
-  log.Write(
-      {LogLevel::kInfo, "draining", {{"signal", strsignal(signal)}}, {}});
-  std::thread([] { std::_Exit(kSignalExitBase + WaitForStopSignal()); })
-      .detach();
+  log.Write({LogLevel::kInfo, "draining", {{"signal", strsignal(signal)}}, {}});
+  std::thread([] {
+    std::_Exit(kSignalExitBase + WaitForStopSignal());
+  }).detach();
   (*server)->Drain(std::chrono::milliseconds(
       static_cast<int64_t>(flags.grace_seconds * 1000)));
   server->reset();

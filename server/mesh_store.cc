@@ -9,8 +9,7 @@ namespace marrow {
 namespace {
 
 absl::Status Mismatch(const std::string& message) {
-  return WithReason(absl::InvalidArgumentError(message),
-                    kReasonDigestMismatch);
+  return WithReason(absl::InvalidArgumentError(message), kReasonDigestMismatch);
 }
 
 }  // namespace
@@ -69,9 +68,9 @@ absl::Status MeshStore::Upload::Add(uint64_t offset, const std::string& data) {
                      " bytes have come; send chunks in order, without gaps"));
   }
   if (data.size() > digest_.size_bytes - received()) {
-    return InvalidField(
-        "chunk.data", absl::StrCat("goes beyond the ", digest_.size_bytes,
-                                   " bytes that header.size_bytes declares"));
+    return InvalidField("chunk.data",
+                        absl::StrCat("goes beyond the ", digest_.size_bytes,
+                                     " bytes that header.size_bytes declares"));
   }
   if (!store_->Hold(data.size())) {
     return WithReason(
@@ -92,8 +91,7 @@ absl::Status MeshStore::Upload::Finish() {
   const Digest found = hash_.Finish();
   if (found != digest_.sha256) {
     return Mismatch(absl::StrCat("the bytes that came have SHA-256 ",
-                                 found.Hex(), ", not ",
-                                 digest_.sha256.Hex()));
+                                 found.Hex(), ", not ", digest_.sha256.Hex()));
   }
   store_->Put(found, std::move(bytes_));
   return absl::OkStatus();

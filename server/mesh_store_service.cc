@@ -28,10 +28,10 @@ absl::StatusOr<v1::FindMissingMeshesResponse> FindMissing(
     ServiceContext& context, const v1::FindMissingMeshesRequest& request) {
   if (context.draining) return Draining();
   if (request.digests_size() > kMaxDigestsAsked) {
-    return InvalidField("digests",
-                        absl::StrCat("has ", request.digests_size(),
-                                     " entries; at most ", kMaxDigestsAsked,
-                                     " can be asked for at once"));
+    return InvalidField(
+        "digests",
+        absl::StrCat("has ", request.digests_size(), " entries; at most ",
+                     kMaxDigestsAsked, " can be asked for at once"));
   }
   v1::FindMissingMeshesResponse response;
   for (int i = 0; i < request.digests_size(); ++i) {
@@ -79,9 +79,8 @@ absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
   response.set_predicted_seconds(
       PredictSolverSeconds(mesh.report.vertices, count) +
       kSecondsAFace * static_cast<double>(mesh.report.faces));
-  response.set_predicted_bytes(
-      PredictSolverBytes(mesh.report.vertices, count) +
-      kBytesAFace * mesh.report.faces);
+  response.set_predicted_bytes(PredictSolverBytes(mesh.report.vertices, count) +
+                               kBytesAFace * mesh.report.faces);
   return response;
 }
 

@@ -120,9 +120,9 @@ absl::StatusOr<MeshDigest> ParseMeshDigest(const v1::MeshDigest& digest,
   MeshDigest result;
   const std::string& sha256 = digest.sha256();
   if (sha256.size() != result.sha256.bytes.size()) {
-    return InvalidField(field + ".sha256",
-                        absl::StrCat("has ", sha256.size(),
-                                     " bytes; a SHA-256 has 32"));
+    return InvalidField(
+        field + ".sha256",
+        absl::StrCat("has ", sha256.size(), " bytes; a SHA-256 has 32"));
   }
   std::copy(sha256.begin(), sha256.end(), result.sha256.bytes.begin());
   result.size_bytes = digest.size_bytes();

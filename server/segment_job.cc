@@ -70,8 +70,8 @@ class JobSink : public Sink {
     if (!outputs_.levels.contains(result.level)) return Going();
     Append(level_events_->OfLevel(result.tree, result.level));
     if (outputs_.face_labels) {
-      Append(LabelEvents(result.level, v1::LABEL_DOMAIN_FACE,
-                         result.face_labels));
+      Append(
+          LabelEvents(result.level, v1::LABEL_DOMAIN_FACE, result.face_labels));
     }
     if (outputs_.point_labels) {
       Append(LabelEvents(result.level, v1::LABEL_DOMAIN_VERTEX,

@@ -147,11 +147,10 @@ class ServerImpl final : public Server {
   void SetServing(bool serving) {
     grpc::HealthCheckServiceInterface* health =
         server_->GetHealthCheckService();
-    for (const char* service :
-         {v1::SegmentationService::service_full_name(),
-          v1::MeshStoreService::service_full_name(),
-          v1::SpectrumService::service_full_name(),
-          v1::CapabilitiesService::service_full_name()}) {
+    for (const char* service : {v1::SegmentationService::service_full_name(),
+                                v1::MeshStoreService::service_full_name(),
+                                v1::SpectrumService::service_full_name(),
+                                v1::CapabilitiesService::service_full_name()}) {
       health->SetServingStatus(service, serving);
     }
     health->SetServingStatus(serving);

@@ -73,10 +73,9 @@ void CallRecord::Describe(std::string name, std::string value) {
 
 void CallRecord::Finished(const grpc::Status& status) {
   if (!context_.options.log) return;
-  log_.seconds =
-      std::chrono::duration<double>(Clock::now() - arrived_).count();
-  Describe("code", absl::StatusCodeToString(static_cast<absl::StatusCode>(
-                       status.error_code())));
+  log_.seconds = std::chrono::duration<double>(Clock::now() - arrived_).count();
+  Describe("code", absl::StatusCodeToString(
+                       static_cast<absl::StatusCode>(status.error_code())));
   if (!status.ok()) Describe("error", status.error_message());
   log_.level = LevelOf(status);
   context_.options.log(log_);

@@ -53,14 +53,13 @@ absl::Status Compute(ServiceContext& context, const Work& work,
   job.Progress(v1::STAGE_SPECTRUM, kMeshShare);
   SpectrumUse use;
   MARROW_ASSIGN_OR_RETURN(
-      auto pairs,
-      context.spectra.Get(
-          *mesh, work.eigen_pairs, *job.cancel(),
-          [&job](double fraction) {
-            job.Progress(v1::STAGE_SPECTRUM,
-                         kMeshShare + (1 - kMeshShare) * fraction);
-          },
-          use));
+      auto pairs, context.spectra.Get(
+                      *mesh, work.eigen_pairs, *job.cancel(),
+                      [&job](double fraction) {
+                        job.Progress(v1::STAGE_SPECTRUM,
+                                     kMeshShare + (1 - kMeshShare) * fraction);
+                      },
+                      use));
 
   v1::SpectrumEvent last;
   v1::SpectrumCompleted* completed = last.mutable_completed();
@@ -90,9 +89,8 @@ absl::StatusOr<Plan> MakePlan(ServiceContext& context,
   Work work;
   work.eigenvectors = request.include_eigenvectors();
   MARROW_ASSIGN_OR_RETURN(
-      work.eigen_pairs,
-      ParseEigenPairs(request.has_eigen_pairs(), request.eigen_pairs(),
-                      "eigen_pairs"));
+      work.eigen_pairs, ParseEigenPairs(request.has_eigen_pairs(),
+                                        request.eigen_pairs(), "eigen_pairs"));
   MARROW_ASSIGN_OR_RETURN(work.payload,
                           ResolveMesh(request.has_mesh(), request.mesh(),
                                       context.options, context.store));
@@ -101,8 +99,8 @@ absl::StatusOr<Plan> MakePlan(ServiceContext& context,
   plan.key = KeyOf(work);
   plan.open = [](SpectrumJob&) {};
   plan.run = [&context, work](SpectrumJob& job) {
-    const absl::Status status = RunGuarded(
-        *job.cancel(), [&] { return Compute(context, work, job); });
+    const absl::Status status =
+        RunGuarded(*job.cancel(), [&] { return Compute(context, work, job); });
     if (!status.ok()) job.Fail(status);
   };
   return plan;

@@ -62,9 +62,9 @@ void StartJob(ServiceContext& context, JobTable<Event>& table,
 template <typename Event>
 void AnswerFromJob(ServiceContext& context, JobTable<Event>& table,
                    StreamState<Event>& stream, JobPlan<Event> plan) {
-  auto [job, is_new] = table.Join(
-      plan.key, stream.shared_from_this(),
-      [&context, &plan] { return NewJob(context, plan); });
+  auto [job, is_new] =
+      table.Join(plan.key, stream.shared_from_this(),
+                 [&context, &plan] { return NewJob(context, plan); });
   stream.Begin(job, !is_new, &AdaptForJoiner<Event>);
   if (is_new) StartJob(context, table, std::move(plan), job);
 }

@@ -91,8 +91,9 @@ class UploadCall::State final : public Tickable {
   absl::Status TakeLocked() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
     if (upload_ == nullptr) return TakeHeaderLocked();
     if (!request_.has_chunk()) {
-      return InvalidField("chunk", "is missing; only the first message of an "
-                                   "upload is a header");
+      return InvalidField("chunk",
+                          "is missing; only the first message of an "
+                          "upload is a header");
     }
     MARROW_RETURN_IF_ERROR(CheckChunk(request_.chunk()));
     return upload_->Add(request_.chunk().offset(), request_.chunk().data());

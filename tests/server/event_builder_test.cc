@@ -207,8 +207,8 @@ TEST(SpectrumEventsTest, EigenvaluesAlone) {
   auto pairs = std::make_shared<EigenPairs>();
   pairs->area = 1;
   pairs->eigenvalues = Eigen::Vector2d(0, 8);
-  const SpectrumEvents events(
-      std::make_shared<CanonicalMesh>(DoubledMesh(3)), pairs, false);
+  const SpectrumEvents events(std::make_shared<CanonicalMesh>(DoubledMesh(3)),
+                              pairs, false);
   EXPECT_EQ(events.count(), 2u);
 }
 

@@ -107,8 +107,8 @@ class Daemon {
 class Call {
  public:
   explicit Call(const std::string& address)
-      : stub_(v1::SegmentationService::NewStub(grpc::CreateChannel(
-            address, grpc::InsecureChannelCredentials()))) {
+      : stub_(v1::SegmentationService::NewStub(
+            grpc::CreateChannel(address, grpc::InsecureChannelCredentials()))) {
     v1::SegmentRequest request;
     request.mutable_mesh()->set_draco(StarPayload(4));
     reader_ = stub_->Segment(&context_, request);
@@ -149,8 +149,8 @@ TEST(MarrowdTest, TheLogIsJsonLines) {
     messages.push_back(json["message"]);
     if (messages.back() == "call") call = json;
   }
-  EXPECT_EQ(messages, (std::vector<std::string>{"listening", "call",
-                                                "draining", "stopped"}));
+  EXPECT_EQ(messages, (std::vector<std::string>{"listening", "call", "draining",
+                                                "stopped"}));
   EXPECT_EQ(call["method"], "SegmentationService.Segment");
   EXPECT_EQ(call["code"], "OK");
   EXPECT_EQ(call["mesh"].get<std::string>().size(), 12u);

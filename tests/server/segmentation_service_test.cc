@@ -216,16 +216,17 @@ TEST_F(SegmentTest, DifferentConcurrentRequestsShareTheSolver) {
   EXPECT_EQ(solver_->calls, 1);
 }
 
-// Reads until the job runs the solver.
+// A call of which the first events have come, up to one of that kind.
 class RunningCall {
  public:
   RunningCall(v1::SegmentationService::Stub& stub,
-              const v1::SegmentRequest& request)
+              const v1::SegmentRequest& request,
+              v1::SegmentEvent::EventCase until = v1::SegmentEvent::kMeshReport)
       : reader_(stub.Segment(&context_, request)) {
     v1::SegmentEvent event;
-    while (reader_->Read(&event) && !event.has_mesh_report()) {
+    while (reader_->Read(&event) && event.event_case() != until) {
     }
-    EXPECT_TRUE(event.has_mesh_report());
+    EXPECT_EQ(event.event_case(), until);
   }
   void Cancel() { context_.TryCancel(); }
   grpc::Status Finish() {
@@ -311,20 +312,14 @@ TEST_F(SegmentTest, AFullServerRefuses) {
   Start();
   solver_->hold = true;
   RunningCall running(*segmentation_, Request(StarPayload(3)));
-  v1::SegmentRequest other = Request(StarPayload(2));
-  std::thread waiting([this, other] { EXPECT_TRUE(Segment(other).status.ok()); });
-  Answer refused;
-  v1::SegmentRequest third = Request(StarPayload(2, 1.5));
-  EXPECT_TRUE(WaitUntil([&] {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + milliseconds(200));
-    refused = Segment(third, context);
-    return refused.status.error_code() == grpc::StatusCode::UNAVAILABLE;
-  }));
+  RunningCall waiting(*segmentation_, Request(StarPayload(2)),
+                      v1::SegmentEvent::kProgress);
+  const Answer refused = Segment(Request(StarPayload(2, 1.5)));
+  EXPECT_EQ(refused.status.error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(ReasonIn(refused.status), "OVERLOADED");
   solver_->hold = false;
   EXPECT_TRUE(running.Finish().ok());
-  waiting.join();
+  EXPECT_TRUE(waiting.Finish().ok());
 }
 
 TEST_F(SegmentTest, BadFieldsAreNamed) {
@@ -347,9 +342,8 @@ TEST_F(SegmentTest, BadFieldsAreNamed) {
   expect("mesh.draco", [](R& r) {
     r.mutable_mesh()->set_draco(std::string((1 << 20) + 1, 'x'));
   });
-  expect("mesh.digest.sha256", [](R& r) {
-    r.mutable_mesh()->mutable_digest()->set_sha256("short");
-  });
+  expect("mesh.digest.sha256",
+         [](R& r) { r.mutable_mesh()->mutable_digest()->set_sha256("short"); });
   expect("mesh.digest.size_bytes", [](R& r) {
     r.mutable_mesh()->mutable_digest()->set_sha256(std::string(32, 'x'));
   });
@@ -389,8 +383,7 @@ TEST_F(SegmentTest, AnUnknownDigestIsMissing) {
   request.mutable_mesh()->mutable_digest()->set_sha256(std::string(32, 'x'));
   request.mutable_mesh()->mutable_digest()->set_size_bytes(5);
   const Answer answer = Segment(request);
-  EXPECT_EQ(answer.status.error_code(),
-            grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_EQ(ReasonIn(answer.status), "MESH_MISSING");
   EXPECT_EQ(DetailsOf(answer.status).details(1).type_url(),
             "type.googleapis.com/google.rpc.PreconditionFailure");

@@ -96,9 +96,9 @@ class ServiceTest : public ::testing::Test {
     auto server = Server::Start(options_, engine_);
     ASSERT_TRUE(server.ok()) << server.status();
     server_ = *std::move(server);
-    channel_ = grpc::CreateChannel(
-        "127.0.0.1:" + std::to_string(server_->port()),
-        grpc::InsecureChannelCredentials());
+    channel_ =
+        grpc::CreateChannel("127.0.0.1:" + std::to_string(server_->port()),
+                            grpc::InsecureChannelCredentials());
     segmentation_ = v1::SegmentationService::NewStub(channel_);
     store_ = v1::MeshStoreService::NewStub(channel_);
     spectrum_ = v1::SpectrumService::NewStub(channel_);
@@ -137,7 +137,8 @@ class ServiceTest : public ::testing::Test {
   // The reason in a failed call's ErrorInfo, with its field where it has one:
   // "INVALID_PARAMETER options.kappa".
   static std::string ReasonIn(const grpc::Status& status) {
-    for (const auto& any : DetailsOf(status).details()) {
+    const v1::RpcStatus details = DetailsOf(status);
+    for (const auto& any : details.details()) {
       if (any.type_url() != "type.googleapis.com/google.rpc.ErrorInfo") {
         continue;
       }

@@ -59,7 +59,8 @@ class SpectrumCacheTest : public ::testing::Test {
  protected:
   absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
       SpectrumCache& cache, const CanonicalMesh& mesh, uint32_t count) {
-    return cache.Get(mesh, count, never_, [](double) {}, use_);
+    return cache.Get(
+        mesh, count, never_, [](double) {}, use_);
   }
 
   std::shared_ptr<FakeSolver> solver_ = std::make_shared<FakeSolver>();
@@ -226,8 +227,8 @@ TEST_F(SpectrumCacheTest, ManyCallersUnderCancellationAllGetAnAnswer) {
       for (int i = 0; i < 200; ++i) {
         CancelToken cancel;
         if ((i + t) % 5 == 0) cancel.Cancel();
-        const auto result = cache.Get(MeshNamed((i * 7 + t) % 6), 10, cancel,
-                                      [](double) {});
+        const auto result =
+            cache.Get(MeshNamed((i * 7 + t) % 6), 10, cancel, [](double) {});
         answered += result.ok() || absl::IsCancelled(result.status());
       }
     });

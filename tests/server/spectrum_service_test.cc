@@ -42,8 +42,7 @@ TEST_F(SpectrumServiceTest, PrewarmsTheCache) {
   EXPECT_EQ(events[0].header().report().vertices(), 642u);
   EXPECT_EQ(events[1].eigenvalues().eigenvalues_size(), 21);
   EXPECT_EQ(events[1].eigenvalues().eigenvalues(0), 0);
-  EXPECT_EQ(events[2].completed().spectrum().outcome(),
-            v1::CACHE_OUTCOME_MISS);
+  EXPECT_EQ(events[2].completed().spectrum().outcome(), v1::CACHE_OUTCOME_MISS);
   EXPECT_EQ(Segment(Request(StarPayload(3))).completed().spectrum().outcome(),
             v1::CACHE_OUTCOME_HIT);
   EXPECT_EQ(solver_->calls, 1);

@@ -77,10 +77,8 @@ TEST(StatusTest, OverloadAndDrainingSayWhenToTryAgain) {
     const grpc::Status grpc_status = ToGrpcStatus(status);
     EXPECT_EQ(grpc_status.error_code(), grpc::StatusCode::UNAVAILABLE);
     const auto rpc = DetailsOf(grpc_status);
-    EXPECT_GT(Only<v1::RetryInfo>(rpc, "RetryInfo").retry_delay().seconds(),
-              0);
-    EXPECT_EQ(Only<v1::ErrorInfo>(rpc, "ErrorInfo").reason(),
-              ReasonOf(status));
+    EXPECT_GT(Only<v1::RetryInfo>(rpc, "RetryInfo").retry_delay().seconds(), 0);
+    EXPECT_EQ(Only<v1::ErrorInfo>(rpc, "ErrorInfo").reason(), ReasonOf(status));
   }
 }
 
@@ -95,8 +93,8 @@ TEST(StatusTest, EveryCodeHasExactlyOneReason) {
 }
 
 TEST(StatusTest, AHostileMessageIsCutAndCleaned) {
-  const grpc::Status status = ToGrpcStatus(
-      absl::InternalError("\xff\n" + std::string(100'000, 'x')));
+  const grpc::Status status =
+      ToGrpcStatus(absl::InternalError("\xff\n" + std::string(100'000, 'x')));
   EXPECT_LT(status.error_message().size() + status.error_details().size(),
             4096u);
   EXPECT_EQ(status.error_message().substr(0, 3), "??x");

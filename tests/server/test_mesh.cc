@@ -18,14 +18,15 @@ using Soup = std::vector<std::array<Corner, 3>>;
 
 Soup Icosahedron() {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  const std::vector<Corner> p = {
-      {-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  const int f[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10},
-                        {0, 10, 11}, {1, 5, 9}, {5, 11, 4},  {11, 10, 2},
-                        {10, 7, 6}, {7, 1, 8},  {3, 9, 4},   {3, 4, 2},
-                        {3, 2, 6},  {3, 6, 8},  {3, 8, 9},   {4, 9, 5},
-                        {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  const std::vector<Corner> p = {{-1, g, 0},  {1, g, 0},   {-1, -g, 0},
+                                 {1, -g, 0},  {0, -1, g},  {0, 1, g},
+                                 {0, -1, -g}, {0, 1, -g},  {g, 0, -1},
+                                 {g, 0, 1},   {-g, 0, -1}, {-g, 0, 1}};
+  const int f[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10},
+                        {0, 10, 11}, {1, 5, 9},  {5, 11, 4}, {11, 10, 2},
+                        {10, 7, 6},  {7, 1, 8},  {3, 9, 4},  {3, 4, 2},
+                        {3, 2, 6},   {3, 6, 8},  {3, 8, 9},  {4, 9, 5},
+                        {2, 4, 11},  {6, 2, 10}, {8, 6, 7},  {9, 8, 1}};
   Soup soup;
   for (const auto& t : f) soup.push_back({p[t[0]], p[t[1]], p[t[2]]});
   return soup;
@@ -47,8 +48,11 @@ Soup Subdivide(const Soup& soup) {
 
 Corner OnStar(const Corner& p, double stretch) {
   const Corner d = p.normalized();
-  const std::vector<Corner> arms = {
-      {1, 0, 0.1}, {-0.6, 0.8, 0}, {-0.6, -0.8, 0.1}, {0, 0.1, 1}, {0.3, 0, -1}};
+  const std::vector<Corner> arms = {{1, 0, 0.1},
+                                    {-0.6, 0.8, 0},
+                                    {-0.6, -0.8, 0.1},
+                                    {0, 0.1, 1},
+                                    {0.3, 0, -1}};
   double radius = 1;
   for (const Corner& arm : arms) {
     const double cosine = d.dot(arm.normalized());
@@ -64,8 +68,8 @@ std::string StarPayload(int depth, double stretch) {
   for (int i = 0; i < depth; ++i) soup = Subdivide(soup);
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(static_cast<int>(soup.size()));
-  const int attribute = builder.AddAttribute(
-      draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int attribute = builder.AddAttribute(draco::GeometryAttribute::POSITION,
+                                             3, draco::DT_FLOAT32);
   for (size_t i = 0; i < soup.size(); ++i) {
     std::array<Eigen::Vector3f, 3> corners;
     for (int k = 0; k < 3; ++k) {
