@@ -1,5 +1,6 @@
 #include "core/pipeline/pipeline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <memory>
