@@ -149,6 +149,7 @@ TEST(SplitRegionTest, NothingIsLeftToSplitWhereTheMeanDistanceIsNegative) {
       Split(solved, solved.AllFaces(), SplitOptions{.epsilon = 1});
   EXPECT_TRUE(split.pieces.empty());
   EXPECT_EQ(split.stop_reason, StopReason::kOneSegment);
+  EXPECT_EQ(split.iterations, 0u);
 }
 
 TEST(SplitRegionTest, GivesTheSameTwice) {
