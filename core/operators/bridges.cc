@@ -44,10 +44,10 @@ class BodyTree {
     body_ = &body;
     // Children stand behind their parents.
     for (size_t i = nodes_.size(); i-- > 0;)
-      nodes_[i].body = nodes_[i].right == 0
-                           ? CommonBody(nodes_[i])
-                           : Common(nodes_[i + 1].body,
-                                    nodes_[nodes_[i].right].body);
+      nodes_[i].body =
+          nodes_[i].right == 0
+              ? CommonBody(nodes_[i])
+              : Common(nodes_[i + 1].body, nodes_[nodes_[i].right].body);
   }
 
   // Lowers `best` to the least bridge from the vertex to another body. Equal
@@ -59,8 +59,8 @@ class BodyTree {
 
   struct Node {
     Eigen::RowVector3d low, high;
-    uint32_t begin, end;      // in order_
-    uint32_t right = 0;       // the left child is the next node; 0 for a leaf
+    uint32_t begin, end;       // in order_
+    uint32_t right = 0;        // the left child is the next node; 0 for a leaf
     uint32_t body = kNoIndex;  // kNoIndex where there are several
   };
 
@@ -126,8 +126,8 @@ class BodyTree {
   void Consider(uint32_t from, uint32_t to, Bridge& best) const {
     if ((*body_)[to] == (*body_)[from]) return;
     const Eigen::RowVector3d apart = points_.row(to) - points_.row(from);
-    best = std::min(best, Bridge{Square(apart),
-                                 {std::min(from, to), std::max(from, to)}});
+    best = std::min(
+        best, Bridge{Square(apart), {std::min(from, to), std::max(from, to)}});
   }
 
   Positions points_;

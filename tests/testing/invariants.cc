@@ -44,8 +44,7 @@ void ExpectSoundFamily(const Adjacency& adjacency, const SegmentTree& tree,
     faces.insert(faces.end(), child.faces.begin(), child.faces.end());
     area += child.area;
     if (CountPieces(adjacency, node.faces) == 1) {
-      EXPECT_EQ(CountPieces(adjacency, child.faces), 1u)
-          << "node " << child.id;
+      EXPECT_EQ(CountPieces(adjacency, child.faces), 1u) << "node " << child.id;
     }
     if (i == 0) continue;
     const SegmentNode& elder = tree.nodes[node.children[i - 1]];
@@ -125,7 +124,9 @@ void ExpectSoundTree(const TriangleMesh& mesh, const Adjacency& adjacency,
     // Breadth first: levels and parents never fall.
     EXPECT_GE(node.level, depth);
     depth = node.level;
-    if (id > 1) EXPECT_GE(node.parent, tree.nodes[id - 1].parent);
+    if (id > 1) {
+      EXPECT_GE(node.parent, tree.nodes[id - 1].parent);
+    }
     ExpectSoundNode(mesh, node);
     EXPECT_NE(node.children.size(), 1u);
     if (!node.children.empty()) {
@@ -148,8 +149,11 @@ void ExpectSoundSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
     SCOPED_TRACE(::testing::Message() << "joint " << j);
     const Joint& joint = skeleton.joints[j];
     EXPECT_TRUE(joint.position.allFinite());
-    if (j == 0) EXPECT_EQ(joint.parent, kNoIndex);
-    if (j > 0) ASSERT_LT(joint.parent, j);
+    if (j == 0) {
+      EXPECT_EQ(joint.parent, kNoIndex);
+    } else {
+      ASSERT_LT(joint.parent, j);
+    }
     if (joint.articulation) {
       ASSERT_EQ(joint.segments.size(), 2u);
       EXPECT_TRUE(Touch(mesh, tree, joint.segments[0], joint.segments[1]));
@@ -161,15 +165,17 @@ void ExpectSoundSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
     ASSERT_EQ(joint.segments.size(), 1u);
     EXPECT_TRUE(centres.emplace(joint.segments[0], j).second);
     EXPECT_EQ(joint.position, tree.nodes[joint.segments[0]].centroid);
-    if (j > 0 && skeleton.joints[joint.parent].articulation)
+    if (j > 0 && skeleton.joints[joint.parent].articulation) {
       EXPECT_EQ(skeleton.joints[joint.parent].segments[1], joint.segments[0]);
+    }
   }
   std::vector<uint32_t> segments;
   for (const auto& [segment, joint] : centres) segments.push_back(segment);
   EXPECT_EQ(segments, tree.SegmentsAtLevel(level));
   // In one piece, every segment but the root's hangs on an articulation.
-  if (CountPieces(adjacency, tree.nodes[0].faces) == 1)
+  if (CountPieces(adjacency, tree.nodes[0].faces) == 1) {
     EXPECT_EQ(skeleton.joints.size(), 2 * segments.size() - 1);
+  }
 }
 
 }  // namespace marrow

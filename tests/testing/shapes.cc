@@ -128,8 +128,7 @@ TriangleMesh Revolve(const std::vector<std::array<double, 2>>& profile,
       // Rings alternate by half a step; ring i has the offset (i + 1) % 2.
       const uint32_t shift = (i + 1) % 2;
       faces.push_back({at(i, j), at(i, j + 1), at(i + 1, j + shift)});
-      faces.push_back({at(i, j + 1 - shift), at(i + 1, j + 1),
-                       at(i + 1, j)});
+      faces.push_back({at(i, j + 1 - shift), at(i + 1, j + 1), at(i + 1, j)});
     }
   }
   return MeshOf(points, std::move(faces));
@@ -138,8 +137,7 @@ TriangleMesh Revolve(const std::vector<std::array<double, 2>>& profile,
 }  // namespace
 
 TriangleMesh SingleTriangle() {
-  return MeshOf({{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}},
-                {{0, 1, 2}});
+  return MeshOf({{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}}, {{0, 1, 2}});
 }
 
 TriangleMesh Tetrahedron() {
@@ -149,9 +147,9 @@ TriangleMesh Tetrahedron() {
 
 TriangleMesh Icosphere(uint32_t subdivisions) {
   const double g = std::numbers::phi;
-  Points points = {{-1, g, 0}, {1, g, 0},   {-1, -g, 0}, {1, -g, 0},
-                   {0, -1, g}, {0, 1, g},   {0, -1, -g}, {0, 1, -g},
-                   {g, 0, -1}, {g, 0, 1},   {-g, 0, -1}, {-g, 0, 1}};
+  Points points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                   {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                   {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
   for (auto& p : points) p.normalize();
   std::vector<Triangle> faces = {
       {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
@@ -161,8 +159,7 @@ TriangleMesh Icosphere(uint32_t subdivisions) {
   for (uint32_t s = 0; s < subdivisions; ++s) {
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
     auto middle = [&](uint32_t a, uint32_t b) {
-      auto [it, is_new] = middles.try_emplace(std::minmax(a, b),
-                                              points.size());
+      auto [it, is_new] = middles.try_emplace(std::minmax(a, b), points.size());
       if (is_new) points.push_back((points[a] + points[b]).normalized());
       return it->second;
     };
@@ -248,8 +245,8 @@ TriangleMesh Dumbbell(double left, uint32_t around) {
     const int steps = static_cast<int>(std::ceil(around * radius / 2));
     for (int i = 0; i <= steps; ++i) {
       const double angle = from + (to - from) * i / steps;
-      profile.push_back({centre - radius * std::cos(angle),
-                         radius * std::sin(angle)});
+      profile.push_back(
+          {centre - radius * std::cos(angle), radius * std::sin(angle)});
     }
   };
   const double left_end = pi - std::asin(neck / left);
@@ -312,8 +309,8 @@ TriangleMesh Bowtie(uint32_t rings) {
 TriangleMesh Apart(const TriangleMesh& a, const TriangleMesh& b) {
   Points points = PointsOf(a);
   std::vector<Triangle> faces = a.faces;
-  const double shift = 1 + a.positions.col(0).maxCoeff() -
-                       b.positions.col(0).minCoeff();
+  const double shift =
+      1 + a.positions.col(0).maxCoeff() - b.positions.col(0).minCoeff();
   for (const Eigen::Vector3d& p : PointsOf(b))
     points.push_back(p + Eigen::Vector3d(shift, 0, 0));
   const uint32_t n = a.NumVertices();

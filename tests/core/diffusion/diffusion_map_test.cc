@@ -61,8 +61,8 @@ struct Scene {
     for (uint32_t f : members) {
       for (int i = 0; i < 3; ++i) {
         const Eigen::RowVectorXd middle =
-            0.5 * (Phi.row(mesh.faces[f][i]) +
-                   Phi.row(mesh.faces[f][(i + 1) % 3]));
+            0.5 *
+            (Phi.row(mesh.faces[f][i]) + Phi.row(mesh.faces[f][(i + 1) % 3]));
         sum += areas[f] / 3 * function(middle);
       }
       area += areas[f];
@@ -102,8 +102,8 @@ TEST(MapDimensionTest, NeverSplitsAClusterOfEqualEigenvalues) {
   // Two clusters whose members differ by rounding alone; the threshold falls
   // into the midst of each.
   const double tiny = 1e-13;
-  const EigenPairs pairs = PairsOf(
-      {0, 1 - tiny, 1, 1 + tiny, 3 - tiny, 3, 3, 3 + tiny, 9}, false);
+  const EigenPairs pairs =
+      PairsOf({0, 1 - tiny, 1, 1 + tiny, 3 - tiny, 3, 3, 3 + tiny, 9}, false);
   for (double offset : {-0.5, 0.0, 0.5}) {
     EXPECT_EQ(MapDimension(pairs, 1, std::exp(-(1 + offset * tiny))), 3u);
     EXPECT_EQ(MapDimension(pairs, 1, std::exp(-(3 + offset * tiny))), 7u);
@@ -130,9 +130,8 @@ TEST(DiffusionMapTest, HasARowAVertexInTheirOrder) {
   ASSERT_EQ(Phi.cols(), 8);
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 8; ++k)
-      EXPECT_DOUBLE_EQ(Phi(i, k),
-                       std::exp(-0.3 * pairs->eigenvalues[k + 1]) *
-                           pairs->eigenvectors(vertices[i], k + 1));
+      EXPECT_DOUBLE_EQ(Phi(i, k), std::exp(-0.3 * pairs->eigenvalues[k + 1]) *
+                                      pairs->eigenvectors(vertices[i], k + 1));
 }
 
 // Eq. 6 by another road: the distance in terms of the heat kernel of 2 t, taken
@@ -143,19 +142,16 @@ TEST(DiffusionDistanceTest, IsThatOfTheHeatKernel) {
   const auto pairs = Solve(LimbCross(1), n);
   ASSERT_TRUE(pairs->complete);
   const Laplacian laplacian = BuildLaplacian(canonical.mesh);
-  const Eigen::MatrixXd inverse_mass =
-      laplacian.M.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd inverse_mass = laplacian.M.cwiseInverse().asDiagonal();
   for (double t : {0.001, 0.02}) {
     const Eigen::MatrixXd generator =
         -2 * t * inverse_mass * Eigen::MatrixXd(laplacian.L);
     const Eigen::MatrixXd kernel = generator.exp() * inverse_mass;
-    const DiffusionMap Phi =
-        BuildDiffusionMap(*pairs, Everything(n), t, n - 1);
+    const DiffusionMap Phi = BuildDiffusionMap(*pairs, Everything(n), t, n - 1);
     for (uint32_t a = 0; a < n; a += 5)
       for (uint32_t b = 0; b < n; b += 3) {
         const double exact = kernel(a, a) + kernel(b, b) - 2 * kernel(a, b);
-        EXPECT_NEAR(DiffusionDistance(Phi, a, b), exact,
-                    1e-8 * kernel(a, a));
+        EXPECT_NEAR(DiffusionDistance(Phi, a, b), exact, 1e-8 * kernel(a, a));
       }
   }
 }

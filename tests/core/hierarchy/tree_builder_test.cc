@@ -28,10 +28,9 @@ TEST_P(TreeOfAnyShape, KeepsItsInvariantsAtEveryDepth) {
     while (deeper && builder.depth() < 3) {
       const uint32_t before = builder.depth();
       std::vector<double> shares;
-      deeper = builder
-                   .Deepen(cancel,
-                           [&](double share) { shares.push_back(share); })
-                   .value();
+      deeper =
+          builder.Deepen(cancel, [&](double share) { shares.push_back(share); })
+              .value();
       EXPECT_EQ(builder.depth(), before + deeper);
       EXPECT_TRUE(std::ranges::is_sorted(shares));
       EXPECT_LE(shares.back(), 1);
@@ -62,9 +61,9 @@ TEST(TreeBuilderTest, ASingleTriangleIsARootThatIsTooSmall) {
   EXPECT_THAT(root.faces, ElementsAre(0));
   EXPECT_THAT(root.medial_structure, ElementsAre(0, 1, 2));
   EXPECT_NEAR(root.area, std::sqrt(0.75) / 2, 1e-12);
-  EXPECT_NEAR((root.centroid - Eigen::Vector3d(0.5, std::sqrt(0.75) / 3, 0))
-                  .norm(),
-              0, 1e-12);
+  EXPECT_NEAR(
+      (root.centroid - Eigen::Vector3d(0.5, std::sqrt(0.75) / 3, 0)).norm(), 0,
+      1e-12);
 }
 
 TEST(TreeBuilderTest, CentroidsAreWeightedByArea) {
@@ -73,8 +72,7 @@ TEST(TreeBuilderTest, CentroidsAreWeightedByArea) {
   TriangleMesh mesh = Grid(2, 1);
   mesh.positions(4, 0) = mesh.positions(5, 0) = 10;
   const SolvedMesh solved = SolveMesh(mesh);
-  const TreeBuilder builder(solved.context(), {},
-                            solved.canonical.report.area);
+  const TreeBuilder builder(solved.context(), {}, solved.canonical.report.area);
   const SegmentNode& root = builder.tree().nodes[0];
   EXPECT_NEAR(root.area, 10, 1e-9);
   EXPECT_NEAR(root.centroid.x(), 5, 1e-9);
@@ -107,8 +105,7 @@ SegmentTree SmallTree() {
   SegmentTree tree;
   tree.nodes.resize(5);
   auto fill = [&](uint32_t id, uint32_t parent, uint32_t level,
-                  std::vector<uint32_t> faces,
-                  std::vector<uint32_t> children) {
+                  std::vector<uint32_t> faces, std::vector<uint32_t> children) {
     SegmentNode& node = tree.nodes[id];
     node.id = id;
     node.parent = parent;

@@ -41,10 +41,9 @@ TEST_P(LaplacianOfAnyShape, HasTheConstantsAloneInItsKernel) {
   const Eigen::MatrixXd symmetric = inverse_sqrt.asDiagonal() *
                                     Eigen::MatrixXd(laplacian.L) *
                                     inverse_sqrt.asDiagonal();
-  const Eigen::VectorXd lambda =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-          symmetric, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd lambda = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                                     symmetric, Eigen::EigenvaluesOnly)
+                                     .eigenvalues();
   const double rounding = 1e-13 * lambda[lambda.size() - 1];
   EXPECT_NEAR(lambda[0], 0, rounding);
   EXPECT_GT(lambda[1], 0.1);
@@ -105,8 +104,7 @@ TEST(LaplacianTest, FacesAtAnEdgeOfManyAllCount) {
 
 TEST(LaplacianTest, MollifiesOnlyWhereItMust) {
   EXPECT_EQ(BuildLaplacian(Icosphere(3)).mollification, 0);
-  const Laplacian needles =
-      BuildLaplacian(WithSlivers(Icosphere(3), 4, 1e-12));
+  const Laplacian needles = BuildLaplacian(WithSlivers(Icosphere(3), 4, 1e-12));
   EXPECT_GT(needles.mollification, 0);
   EXPECT_LT(needles.mollification, 1e-5);
   const Laplacian flat = BuildLaplacian(WithSlivers(Grid(4, 4), 3, 0));

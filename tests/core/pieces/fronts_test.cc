@@ -164,8 +164,7 @@ TEST(CompeteFrontsTest, LargeStructuresAgreeWithTheNaiveVersionToo) {
   const Region region(mesh, Adjacency(mesh), FaceAreaShares(mesh),
                       RandomFaces(mesh, 4, random));
   const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
-  const auto structures =
-      RandomStructures(region.NumVertices(), 2, 80, random);
+  const auto structures = RandomStructures(region.NumVertices(), 2, 80, random);
   EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel),
             NaiveCompetition(region, Phi, structures).Run());
 }

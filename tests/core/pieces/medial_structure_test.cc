@@ -116,10 +116,10 @@ std::vector<uint32_t> NaiveStructure(const Region& region,
     const Triangle& corner = region.triangles()[f];
     corners.insert(corner.begin(), corner.end());
     for (int i = 0; i < 3; ++i)
-      mean += region.areas()[f] / 3 *
-              NaiveAdd(region, Phi, members,
-                       0.5 * (Phi.row(corner[i]) +
-                              Phi.row(corner[(i + 1) % 3])));
+      mean +=
+          region.areas()[f] / 3 *
+          NaiveAdd(region, Phi, members,
+                   0.5 * (Phi.row(corner[i]) + Phi.row(corner[(i + 1) % 3])));
     area += region.areas()[f];
   }
   mean /= area;
@@ -142,9 +142,8 @@ TEST(ComputeMedialStructureTest, AgreesWithTheDefinition) {
   for (double epsilon : {0.0, 0.1, 0.3, 1.0, 10.0}) {
     const auto structure =
         ComputeMedialStructure(region, scene.Phi, members, epsilon);
-    EXPECT_THAT(structure,
-                ::testing::ElementsAreArray(NaiveStructure(
-                    region, scene.Phi, members, epsilon)))
+    EXPECT_THAT(structure, ::testing::ElementsAreArray(NaiveStructure(
+                               region, scene.Phi, members, epsilon)))
         << epsilon;
     EXPECT_GE(structure.size(), std::max<size_t>(1, before));
     before = structure.size();

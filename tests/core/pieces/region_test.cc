@@ -39,8 +39,7 @@ std::vector<uint32_t> RingVertices(uint32_t ring) {
 
 std::vector<uint32_t> LoopInMesh(const Region& region, uint32_t mesh_vertex) {
   const auto& vertices = region.mesh_vertices();
-  const auto at =
-      std::find(vertices.begin(), vertices.end(), mesh_vertex);
+  const auto at = std::find(vertices.begin(), vertices.end(), mesh_vertex);
   std::vector<uint32_t> loop;
   for (uint32_t v :
        region.BoundaryLoop(static_cast<uint32_t>(at - vertices.begin())))
@@ -95,10 +94,10 @@ TEST(RegionTest, LoopsThatTouchAreOne) {
     if (f / 2 * 2 != square(1, 1) && f / 2 * 2 != square(2, 2))
       faces.push_back(f);
   auto vertex = [](uint32_t x, uint32_t y) { return 5 * x + y; };
-  EXPECT_THAT(LoopInMesh(RegionOf(mesh, faces), vertex(1, 1)),
-              ElementsAre(vertex(1, 1), vertex(1, 2), vertex(2, 1),
-                          vertex(2, 2), vertex(2, 3), vertex(3, 2),
-                          vertex(3, 3)));
+  EXPECT_THAT(
+      LoopInMesh(RegionOf(mesh, faces), vertex(1, 1)),
+      ElementsAre(vertex(1, 1), vertex(1, 2), vertex(2, 1), vertex(2, 2),
+                  vertex(2, 3), vertex(3, 2), vertex(3, 3)));
 }
 
 TEST(RegionTest, APageOfABookMeetsTheRestAtTheSpine) {

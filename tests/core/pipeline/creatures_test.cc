@@ -58,8 +58,8 @@ TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
 TEST_P(CreatureTest, RotationAndScaleKeepThePartition) {
   const TriangleMesh mesh = Creature(GetParam());
   const RecordingSink run = RunOn(mesh, TwoLevels());
-  const RecordingSink other = RunOn(
-      Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), TwoLevels());
+  const RecordingSink other =
+      RunOn(Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), TwoLevels());
   ASSERT_EQ(other.levels.size(), run.levels.size());
   for (size_t i = 0; i < run.levels.size(); ++i)
     EXPECT_LE(RandIndexDifference(other.levels[i].face_labels,

@@ -1,5 +1,6 @@
 #include "core/pipeline/pipeline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -144,8 +145,8 @@ TEST(PipelineTest, StopsOnceTheTokenIsCancelled) {
   CancelToken cancel;
   CancellingSink sink(cancel);
   SolverEigenPairSource solver;
-  EXPECT_EQ(Run(EncodeDraco(LimbCross(3)), MeshLimits(), FewPairs(), solver,
-                cancel, sink)
+  EXPECT_EQ(marrow::Run(EncodeDraco(LimbCross(3)), MeshLimits(), FewPairs(),
+                        solver, cancel, sink)
                 .code(),
             absl::StatusCode::kCancelled);
   EXPECT_THAT(sink.events, ElementsAre("mesh"));
@@ -166,9 +167,8 @@ TEST(PipelineTest, ChecksTheOptionsBeforeAnything) {
 
 TEST(PipelineTest, RefusesWhatIsNoMesh) {
   RememberingSource source;
-  for (const std::string& bytes :
-       {std::string(), std::string("OFF\n3 1 0\n"),
-        EncodeDraco(Icosphere(1)).substr(0, 200)}) {
+  for (const std::string& bytes : {std::string(), std::string("OFF\n3 1 0\n"),
+                                   EncodeDraco(Icosphere(1)).substr(0, 200)}) {
     RecordingSink sink;
     const absl::Status status = RunWith(bytes, FewPairs(), sink, source);
     EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
@@ -212,9 +212,9 @@ TEST(PipelineTest, FollowsEveryFaceAndPointOfThePayload) {
   mesh.positions.row(n) << 0.25, 0.25, 0.25;
   mesh.positions.row(n + 1) = mesh.positions.row(a);
   mesh.positions.row(n + 2) << 0.5, 0.5, 0.5;
-  mesh.faces.push_back({a, b, b});               // degenerate, on face 7's edge
-  mesh.faces.push_back({c, b, n + 1});           // face 7, turned over
-  mesh.faces.push_back({n + 2, n + 2, n + 2});   // nowhere near
+  mesh.faces.push_back({a, b, b});              // degenerate, on face 7's edge
+  mesh.faces.push_back({c, b, n + 1});          // face 7, turned over
+  mesh.faces.push_back({n + 2, n + 2, n + 2});  // nowhere near
   const RecordingSink expected = RunOn(clean, FewPairs());
   const RecordingSink run = RunOn(mesh, FewPairs());
   ASSERT_EQ(run.levels.size(), expected.levels.size());

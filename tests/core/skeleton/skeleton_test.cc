@@ -29,8 +29,8 @@ TEST_P(SkeletonOfAnyShape, KeepsItsPromises) {
     SCOPED_TRACE(level);
     const Skeleton skeleton = BuildSkeleton(
         solved.canonical.mesh, solved.adjacency, builder.tree(), level);
-    ExpectSoundSkeleton(solved.canonical.mesh, solved.adjacency,
-                        builder.tree(), level, skeleton);
+    ExpectSoundSkeleton(solved.canonical.mesh, solved.adjacency, builder.tree(),
+                        level, skeleton);
   }
 }
 
@@ -94,13 +94,12 @@ TEST(SkeletonTest, ACycleLosesItsShortestBoundary) {
   // The left third, and the rest halved: 0 and 1 share one unit, 0 and 2 three,
   // 1 and 2 four.
   const TriangleMesh mesh = Grid(6, 4);
-  const SegmentTree tree = TreeOf(
-      mesh, 3,
-      [](const auto& p) {
-        if (p.x() < 2) return 0u;
-        return p.y() < 1 ? 1u : 2u;
-      },
-      {0});
+  const SegmentTree tree = TreeOf(mesh, 3,
+                                  [](const auto& p) {
+                                    if (p.x() < 2) return 0u;
+                                    return p.y() < 1 ? 1u : 2u;
+                                  },
+                                  {0});
   const Skeleton skeleton = BuildSkeleton(mesh, Adjacency(mesh), tree, 1);
   ASSERT_EQ(skeleton.joints.size(), 5u);
   EXPECT_THAT(skeleton.joints[0].segments, ElementsAre(1));

@@ -51,8 +51,9 @@ double WorstResidual(const CanonicalMesh& mesh, const EigenPairs& pairs) {
     const Eigen::VectorXd residual =
         laplacian.L * phi - lambda * laplacian.M.cwiseProduct(phi);
     worst = std::max(
-        worst, std::sqrt(residual.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) /
-                   std::max(lambda, pairs.eigenvalues[1]));
+        worst,
+        std::sqrt(residual.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) /
+            std::max(lambda, pairs.eigenvalues[1]));
   }
   return worst;
 }
@@ -206,7 +207,8 @@ TEST(SolverTest, StopsWithinHalfASecondOfBeingCancelled) {
 }
 
 TEST(SolverTest, PredictionsGrowWithTheWork) {
-  EXPECT_LT(PredictSolverSeconds(5'000, 200), PredictSolverSeconds(50'000, 200));
+  EXPECT_LT(PredictSolverSeconds(5'000, 200),
+            PredictSolverSeconds(50'000, 200));
   EXPECT_LT(PredictSolverSeconds(5'000, 50), PredictSolverSeconds(5'000, 200));
   EXPECT_LT(PredictSolverBytes(5'000, 200), PredictSolverBytes(50'000, 200));
   EXPECT_LT(PredictSolverBytes(5'000, 50), PredictSolverBytes(5'000, 200));
