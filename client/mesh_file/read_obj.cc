@@ -1,5 +1,5 @@
-// Not through tinyobjloader: it reads "nan" and any other text it does not
-// know as 0, and names no line in its errors.
+// Not through tinyobjloader: it reads "nan" and any text it does not know as 0,
+// drops faces with fewer than three corners, and only warns of a bad index.
 #include <array>
 #include <cstdint>
 #include <string>
