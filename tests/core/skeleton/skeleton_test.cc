@@ -90,23 +90,41 @@ TEST(SkeletonTest, AChainOfThreeRootedAtItsMiddle) {
   EXPECT_NEAR(articulations.at(3), 6, 1e-12);
 }
 
-TEST(SkeletonTest, ACycleLosesItsShortestBoundary) {
-  // The left third, and the rest halved: 0 and 1 share one unit, 0 and 2 three,
-  // 1 and 2 four.
+// The left two columns, and the rest cut in two at y = 1.
+SegmentTree ThreeInACycle(const TriangleMesh& mesh) {
+  return TreeOf(mesh, 3,
+                [](const auto& p) {
+                  if (p.x() < 2) return 0u;
+                  return p.y() < 1 ? 1u : 2u;
+                },
+                {0});
+}
+
+TEST(SkeletonTest, InACycleEverySegmentHangsOnItsShortestWayToTheRoot) {
+  // Boundaries of 1, 3 and 4 units: all may carry a bone.
   const TriangleMesh mesh = Grid(6, 4);
-  const SegmentTree tree = TreeOf(mesh, 3,
-                                  [](const auto& p) {
-                                    if (p.x() < 2) return 0u;
-                                    return p.y() < 1 ? 1u : 2u;
-                                  },
-                                  {0});
-  const Skeleton skeleton = BuildSkeleton(mesh, Adjacency(mesh), tree, 1);
+  const Skeleton skeleton =
+      BuildSkeleton(mesh, Adjacency(mesh), ThreeInACycle(mesh), 1);
+  ASSERT_EQ(skeleton.joints.size(), 5u);
+  EXPECT_THAT(skeleton.joints[0].segments, ElementsAre(1));
+  EXPECT_THAT(skeleton.joints[1].segments, ElementsAre(1, 3));
+  EXPECT_THAT(skeleton.joints[3].segments, ElementsAre(1, 2));
+  for (uint32_t j : {1u, 3u}) EXPECT_EQ(skeleton.joints[j].parent, 0u);
+  EXPECT_NEAR((skeleton.joints[3].position - Eigen::Vector3d(2, 0.5, 0)).norm(),
+              0, 1e-12);
+}
+
+TEST(SkeletonTest, NoBoneRunsThroughAMereContact) {
+  // Boundaries of 1, 7 and 6 units: the first is less than a quarter of both.
+  const TriangleMesh mesh = Grid(8, 8);
+  const Skeleton skeleton =
+      BuildSkeleton(mesh, Adjacency(mesh), ThreeInACycle(mesh), 1);
   ASSERT_EQ(skeleton.joints.size(), 5u);
   EXPECT_THAT(skeleton.joints[0].segments, ElementsAre(1));
   EXPECT_THAT(skeleton.joints[1].segments, ElementsAre(1, 3));
   EXPECT_THAT(skeleton.joints[2].segments, ElementsAre(3));
   EXPECT_THAT(skeleton.joints[3].segments, ElementsAre(3, 2));
-  EXPECT_NEAR((skeleton.joints[3].position - Eigen::Vector3d(4, 1, 0)).norm(),
+  EXPECT_NEAR((skeleton.joints[3].position - Eigen::Vector3d(5, 1, 0)).norm(),
               0, 1e-12);
 }
 
