@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "client/command/exit_code.h"
@@ -12,6 +13,11 @@ int main(int argc, char** argv) {
   // reason to leave results half written.
   std::signal(SIGPIPE, SIG_IGN);
   const int code = marrow::client::RunCommandLine(argc, argv);
+  if (code > marrow::client::kExitSignal) {
+    // Threads of the service in this process may still run.
+    std::fflush(stdout);
+    std::_Exit(code);
+  }
   errno = 0;
   if ((std::fflush(stdout) != 0 || std::ferror(stdout)) && errno != EPIPE) {
     std::fprintf(stderr, "marrow: cannot write to standard output: %s\n",

@@ -19,6 +19,9 @@ ServiceCall::ServiceCall(const ServiceArguments& arguments)
 ServiceCall::~ServiceCall() {
   absl::MutexLock lock(&mutex_);
   cancellable_ = nullptr;
+  // A factorisation of millions of entries may take seconds to notice that it
+  // is cancelled; who pressed Ctrl-C need not wait for it.
+  if (interrupted()) connection_.release();
 }
 
 absl::Status ServiceCall::Connect() {

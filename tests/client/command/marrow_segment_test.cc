@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -306,6 +307,25 @@ TEST_F(MarrowSegmentTest, JsonIsALineAnEventInOrder) {
                                  "level", "skeleton", "completed", "summary"));
 }
 
+TEST_F(MarrowSegmentTest, SeveralFilesAreToldInTheirOrder) {
+  std::vector<std::string> arguments = {"--levels", "1", "--threads", "3"};
+  const std::string tetrahedron =
+      "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+      "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  arguments.push_back(Sample());  // the slowest
+  for (const char* name : {"d.off", "c.off", "b.off", "a.off"}) {
+    WriteFile(folder_ / name, tetrahedron);
+    arguments.push_back(folder_ / name);
+  }
+  const Finished run = Segment(arguments);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::vector<std::string> lines = Lines(run.out);
+  ASSERT_EQ(lines.size(), 6u);
+  for (size_t i = 0; i < 5; ++i) {
+    EXPECT_TRUE(lines[i].starts_with(arguments[4 + i])) << lines[i];
+  }
+}
+
 TEST_F(MarrowSegmentTest, QuietTellsNothing) {
   const Finished run = Segment({Sample(), "--quiet", "--levels", "1"});
   EXPECT_EQ(run.code, 0);
@@ -328,6 +348,7 @@ TEST_F(MarrowSegmentTest, ATimeoutEndsTheCallAndLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(Out()));
 }
 
+// A second signal would end the process without tidying; one must do.
 TEST_F(MarrowSegmentTest, CtrlCEndsSoonAndLeavesNothing) {
   const std::string large = folder_ / "large.off";
   ASSERT_EQ(RunProgram({ProgramPath("marrow"), "sample", "octopus", "--faces",
@@ -337,8 +358,10 @@ TEST_F(MarrowSegmentTest, CtrlCEndsSoonAndLeavesNothing) {
   Subprocess process({ProgramPath("marrow"), "segment", large, "-o", Out(),
                       "--pairs", "1000", "--json"});
   ASSERT_TRUE(process.WaitForOutput("\"stage\":\"spectrum\""));
+  const auto start = std::chrono::steady_clock::now();
   process.Signal(SIGINT);
   EXPECT_EQ(process.Wait(), 130);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_THAT(process.Out(), Not(HasSubstr("\"completed\"")));
   EXPECT_FALSE(std::filesystem::exists(Out()));
 }

@@ -4,6 +4,8 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -26,13 +28,8 @@ class MarrowServerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
-    daemon_ = new Subprocess(
-        {ProgramPath("marrowd"), "--port", "0", "--log-level", "off"});
-    const std::string words = "listening on ";
-    ASSERT_TRUE(daemon_->WaitForOutput("\n"));
-    const std::string line = daemon_->Out();
-    address_ = line.substr(line.find(words) + words.size());
-    address_.pop_back();
+    daemon_ = StartDaemon().release();
+    address_ = AddressOf(*daemon_);
     ASSERT_EQ(Sample("humanoid", "10000", "h.off").code, 0);
   }
   static void TearDownTestSuite() {
@@ -40,6 +37,18 @@ class MarrowServerTest : public ::testing::Test {
     EXPECT_EQ(daemon_->Wait(), 0);
     delete daemon_;
     delete folder_;
+  }
+
+  static std::unique_ptr<Subprocess> StartDaemon() {
+    return std::make_unique<Subprocess>(std::vector<std::string>{
+        ProgramPath("marrowd"), "--port", "0", "--log-level", "off"});
+  }
+  static std::string AddressOf(Subprocess& daemon) {
+    const std::string words = "listening on ";
+    EXPECT_TRUE(daemon.WaitForOutput("\n"));
+    const std::string line = daemon.Out();
+    return line.substr(line.find(words) + words.size(),
+                       line.size() - line.find(words) - words.size() - 1);
   }
 
   static Finished Sample(const std::string& name, const std::string& faces,
@@ -115,6 +124,20 @@ TEST_F(MarrowServerTest, TheSecondCallNeedsNoSolver) {
   EXPECT_EQ(result["cache"]["outcome"], "hit");
   EXPECT_EQ(result["cache"]["solver_runs"], 0);
   EXPECT_EQ(ReadFile(File("twice/h.seg")), labels);
+}
+
+TEST_F(MarrowServerTest, AServerThatIsLostEndsTheRunWithItsOwnExitCode) {
+  const std::unique_ptr<Subprocess> daemon = StartDaemon();
+  ASSERT_EQ(Sample("octopus", "50000", "big.off").code, 0);
+  Subprocess client({ProgramPath("marrow"), "segment", File("big.off"),
+                     File("h.off"), "-o", File("lost"), "--pairs", "1000",
+                     "--threads", "1", "--json", "--server",
+                     AddressOf(*daemon)});
+  ASSERT_TRUE(client.WaitForOutput("\"stage\":\"spectrum\""));
+  daemon->Signal(SIGKILL);
+  EXPECT_EQ(client.Wait(), 3);
+  EXPECT_THAT(client.Out(), HasSubstr("\"skipped\":1"));
+  EXPECT_FALSE(std::filesystem::exists(File("lost")));
 }
 
 // A rough sheet, whose payload is above the 1 MiB that goes inline.
