@@ -21,71 +21,60 @@ Vector3d ElbowBend(double degrees) {
 CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
-  torso.inner_blend = 0.04;
-  // Two columns side by side, from the hips over the waist to the shoulders.
+  torso.inner_blend = 0.08;
+  // A pear: the round belly over the hips, then the narrower shoulders.
   for (const double side : {-1., 1.}) {
-    const Vector3d hip(side * 0.085, 0.96, 0);
-    const Vector3d waist(side * 0.075, 1.14, 0.01);
-    const Vector3d breast(side * 0.11, 1.31, 0.01);
-    const Vector3d shoulder(side * 0.15, 1.4, 0);
-    torso.cones.push_back({hip, waist, 0.135, 0.125});
-    torso.cones.push_back({waist, breast, 0.125, 0.14});
-    torso.cones.push_back({breast, shoulder, 0.14, 0.09});
+    const Vector3d hip(side * 0.085, 0.7, 0);
+    const Vector3d belly(side * 0.06, 0.82, 0.025);
+    const Vector3d shoulder(side * 0.085, 1.07, 0);
+    torso.cones.push_back({hip, belly, 0.18, 0.205});
+    torso.cones.push_back({belly, shoulder, 0.205, 0.13});
   }
-  torso.cones.push_back({{-0.085, 0.96, 0}, {0.085, 0.96, 0}, 0.13, 0.13});
-  torso.cones.push_back({{-0.15, 1.4, 0}, {0.15, 1.4, 0}, 0.09, 0.09});
   return torso;
 }
 
 void AddHead(Creature& creature) {
   CreaturePart& head = AddLimb("head",
-                               {{{0, 1.44, -0.01}, 0.065},
-                                {{0, 1.57, 0.005}, 0.06},
-                                {{0, 1.71, 0.0}, 0.115}},
+                               {{{0, 1.21, -0.005}, 0.08},
+                                {{0, 1.31, 0.0}, 0.11},
+                                {{0, 1.47, -0.01}, 0.21}},
                                0.03, creature);
-  head.inner_blend = 0.04;
-  head.cones.push_back({{0, 1.755, -0.025}, {0, 1.72, 0.012}, 0.122, 0.115});
-  head.cones.push_back({{0, 1.645, 0.05}, {0, 1.625, 0.065}, 0.066, 0.054});
-  head.cones.push_back({{0, 1.72, 0.12}, {0, 1.68, 0.145}, 0.014, 0.02});
+  head.inner_blend = 0.05;
+  // Cheeks, nose, a lock of hair and the ears.
+  head.cones.push_back({{-0.09, 1.41, 0.03}, {0.09, 1.41, 0.03}, 0.19, 0.19});
+  head.cones.push_back({{0, 1.42, 0.22}, {0, 1.41, 0.255}, 0.035, 0.03});
+  head.cones.push_back({{0, 1.68, -0.02}, {0.05, 1.76, 0.03}, 0.06, 0.02});
   for (const double side : {-1., 1.}) {
-    head.cones.push_back({{side * 0.117, 1.68, -0.015},
-                          {side * 0.13, 1.72, -0.025},
-                          0.017,
-                          0.023});
+    head.cones.push_back({{side * 0.23, 1.42, 0},
+                          {side * 0.275, 1.46, -0.01},
+                          0.045,
+                          0.05});
   }
 }
 
 void AddArms(Creature& creature) {
-  const Vector3d shoulder(0.215, 1.385, 0);
+  const Vector3d shoulder(0.21, 1.07, 0);
   const auto at = [&](double distance, double front) -> Vector3d {
     return shoulder + distance * ArmLine() + front * Vector3d::UnitZ();
   };
   AddLimbPair("arm",
-              {{shoulder, 0.08},
-               {at(0.27, -0.005), 0.056},
-               {at(0.51, 0.005), 0.042},
-               {at(0.66, 0.01), 0.03}},
-              {{at(0.08, 0.015), at(0.17, 0.012), 0.066, 0.06},
-               {at(0.32, 0), at(0.38, 0), 0.059, 0.052},
-               {at(0.55, 0.034), at(0.61, 0.036), 0.031, 0.031},
-               {at(0.55, -0.02), at(0.61, -0.022), 0.031, 0.03},
-               {at(0.62, 0.04), at(0.68, 0.04), 0.026, 0.022},
-               {at(0.62, -0.018), at(0.68, -0.02), 0.026, 0.022},
-               {at(0.54, 0.04), at(0.59, 0.095), 0.027, 0.022}},
-              0.05, creature);
+              {{shoulder, 0.058},
+               {at(0.27, 0), 0.082},
+               {at(0.46, 0.005), 0.07},
+               {at(0.57, 0.01), 0.088}},
+              {{at(0.12, 0), at(0.18, 0), 0.084, 0.086},
+               {at(0.49, 0.06), at(0.52, 0.11), 0.04, 0.035}},
+              0.02, creature);
 }
 
 void AddLegs(Creature& creature) {
   AddLimbPair("leg",
-              {{{0.115, 0.89, 0}, 0.1},
-               {{0.155, 0.51, 0.015}, 0.064},
-               {{0.185, 0.09, -0.025}, 0.04},
-               {{0.205, 0.035, 0.13}, 0.032}},
-              {{{0.155, 0.42, -0.012}, {0.168, 0.3, -0.025}, 0.058, 0.05},
-               {{0.185, 0.045, -0.05}, {0.195, 0.04, 0.06}, 0.042, 0.04},
-               {{0.225, 0.033, 0.1}, {0.232, 0.03, 0.15}, 0.03, 0.026},
-               {{0.185, 0.033, 0.12}, {0.19, 0.03, 0.17}, 0.03, 0.027}},
-              0.045, creature);
+              {{{0.13, 0.56, 0}, 0.065},
+               {{0.15, 0.33, 0.01}, 0.1},
+               {{0.165, 0.1, 0.0}, 0.09},
+               {{0.18, 0.08, 0.14}, 0.08}},
+              {{{0.135, 0.47, 0}, {0.14, 0.42, 0}, 0.118, 0.118}},
+              0.02, creature);
 }
 
 CreaturePose Walk() {
@@ -153,7 +142,7 @@ Creature MakeHumanoid() {
   creature.description = "a person with head, two arms and two legs";
   creature.parts.push_back(Torso());
   creature.joints.push_back(
-      {0, 0, {0, 1.12, 0}, Vector3d::UnitY(), 0.16});  // waist
+      {0, 0, {0, 0.85, 0}, Vector3d::UnitY(), 0.16});  // waist
   AddHead(creature);
   AddArms(creature);
   AddLegs(creature);
