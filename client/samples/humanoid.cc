@@ -35,18 +35,20 @@ CreaturePart Torso() {
 
 void AddHead(Creature& creature) {
   CreaturePart& head = AddLimb("head",
-                               {{{0, 1.21, -0.005}, 0.08},
-                                {{0, 1.31, 0.0}, 0.11},
-                                {{0, 1.47, -0.01}, 0.21}},
+                               {{{0, 1.22, -0.005}, 0.075},
+                                {{0, 1.3, 0.0}, 0.1},
+                                {{0, 1.45, 0.01}, 0.2}},
                                0.03, creature);
-  head.inner_blend = 0.05;
-  // Cheeks, nose, a lock of hair and the ears.
-  head.cones.push_back({{-0.09, 1.41, 0.03}, {0.09, 1.41, 0.03}, 0.19, 0.19});
-  head.cones.push_back({{0, 1.42, 0.22}, {0, 1.41, 0.255}, 0.035, 0.03});
-  head.cones.push_back({{0, 1.68, -0.02}, {0.05, 1.76, 0.03}, 0.06, 0.02});
+  head.inner_blend = 0.04;
+  // Cheeks, the crown, a nose, a lock of hair and the ears.
+  head.cones.push_back({{-0.07, 1.42, 0.02}, {0.07, 1.42, 0.02}, 0.185, 0.185});
+  head.cones.push_back({{-0.04, 1.5, -0.02}, {0.04, 1.5, -0.02}, 0.2, 0.2});
+  head.cones.push_back({{0, 1.42, 0.2}, {0, 1.42, 0.23}, 0.04, 0.035});
+  head.cones.push_back({{0, 1.68, -0.02}, {0.01, 1.75, 0.02}, 0.05, 0.035});
+  head.cones.push_back({{0.01, 1.75, 0.02}, {0.05, 1.77, 0.07}, 0.035, 0.02});
   for (const double side : {-1., 1.}) {
-    head.cones.push_back({{side * 0.23, 1.42, 0},
-                          {side * 0.275, 1.46, -0.01},
+    head.cones.push_back({{side * 0.24, 1.41, -0.01},
+                          {side * 0.265, 1.44, -0.03},
                           0.045,
                           0.05});
   }
@@ -58,11 +60,11 @@ void AddArms(Creature& creature) {
     return shoulder + distance * ArmLine() + front * Vector3d::UnitZ();
   };
   AddLimbPair("arm",
-              {{shoulder, 0.058},
+              {{shoulder, 0.052},
                {at(0.27, 0), 0.082},
                {at(0.46, 0.005), 0.07},
                {at(0.57, 0.01), 0.088}},
-              {{at(0.12, 0), at(0.18, 0), 0.084, 0.086},
+              {{at(0.11, 0), at(0.18, 0), 0.085, 0.088},
                {at(0.49, 0.06), at(0.52, 0.11), 0.04, 0.035}},
               0.02, creature);
 }
