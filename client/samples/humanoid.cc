@@ -47,10 +47,8 @@ void AddHead(Creature& creature) {
   head.cones.push_back({{0, 1.68, -0.02}, {0.01, 1.75, 0.02}, 0.05, 0.035});
   head.cones.push_back({{0.01, 1.75, 0.02}, {0.05, 1.77, 0.07}, 0.035, 0.02});
   for (const double side : {-1., 1.}) {
-    head.cones.push_back({{side * 0.24, 1.41, -0.01},
-                          {side * 0.265, 1.44, -0.03},
-                          0.045,
-                          0.05});
+    head.cones.push_back(
+        {{side * 0.24, 1.41, -0.01}, {side * 0.265, 1.44, -0.03}, 0.045, 0.05});
   }
 }
 
@@ -72,11 +70,11 @@ void AddArms(Creature& creature) {
 void AddLegs(Creature& creature) {
   AddLimbPair("leg",
               {{{0.13, 0.56, 0}, 0.065},
-               {{0.15, 0.33, 0.01}, 0.1},
+               {{0.15, 0.33, 0.01}, 0.092},
                {{0.165, 0.1, 0.0}, 0.09},
                {{0.18, 0.08, 0.14}, 0.08}},
-              {{{0.135, 0.47, 0}, {0.14, 0.42, 0}, 0.118, 0.118}},
-              0.02, creature);
+              {{{0.135, 0.47, 0}, {0.14, 0.42, 0}, 0.118, 0.118}}, 0.02,
+              creature);
 }
 
 CreaturePose Walk() {
@@ -97,10 +95,10 @@ CreaturePose Walk() {
 
 CreaturePose Sit() {
   CreaturePose pose{"sit", {}};
-  TurnBoth("leg", 0, {-82, 0, 0}, pose);
-  TurnBoth("leg", 1, {84, 0, 0}, pose);
+  TurnBoth("leg", 0, {-78, 0, 0}, pose);
+  TurnBoth("leg", 1, {72, 0, 0}, pose);
   TurnBoth("arm", 0, {0, 0, -26}, pose);
-  TurnBoth("arm", 0, {-38, 0, 0}, pose);
+  TurnBoth("arm", 0, {-32, 0, 0}, pose);
   TurnBoth("arm", 1, ElbowBend(45), pose);
   pose.turns.push_back({"torso", 0, {8, 0, 0}});
   pose.turns.push_back({"head", 1, {10, 25, 0}});
@@ -125,12 +123,12 @@ CreaturePose Run() {
   TurnBoth("arm", 0, {0, 0, -28}, pose);
   pose.turns.push_back({"left_arm", 0, {48, 0, 0}});
   pose.turns.push_back({"right_arm", 0, {-46, 0, 0}});
-  TurnBoth("arm", 1, ElbowBend(82), pose);
-  pose.turns.push_back({"left_leg", 0, {-72, 0, 0}});
-  pose.turns.push_back({"left_leg", 1, {78, 0, 0}});
+  TurnBoth("arm", 1, ElbowBend(62), pose);
+  pose.turns.push_back({"left_leg", 0, {-64, 0, 0}});
+  pose.turns.push_back({"left_leg", 1, {62, 0, 0}});
   pose.turns.push_back({"right_leg", 0, {28, 0, 0}});
-  pose.turns.push_back({"right_leg", 1, {68, 0, 0}});
-  pose.turns.push_back({"right_leg", 2, {30, 0, 0}});
+  pose.turns.push_back({"right_leg", 1, {56, 0, 0}});
+  pose.turns.push_back({"right_leg", 2, {20, 0, 0}});
   pose.turns.push_back({"torso", 0, {16, 10, 0}});
   pose.turns.push_back({"head", 1, {-12, 0, 0}});
   return pose;
@@ -144,7 +142,7 @@ Creature MakeHumanoid() {
   creature.description = "a person with head, two arms and two legs";
   creature.parts.push_back(Torso());
   creature.joints.push_back(
-      {0, 0, {0, 0.85, 0}, Vector3d::UnitY(), 0.16});  // waist
+      {0, 0, {0, 0.85, 0}, Vector3d::UnitY(), 0.24});  // waist
   AddHead(creature);
   AddArms(creature);
   AddLegs(creature);

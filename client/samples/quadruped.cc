@@ -22,14 +22,14 @@ CreaturePart Torso() {
 void AddHead(Creature& creature) {
   CreaturePart& head = AddLimb("head",
                                {{{0, 0.95, 0.41}, 0.085},
-                                {{0, 1.06, 0.5}, 0.11},
-                                {{0, 1.2, 0.6}, 0.19},
-                                {{0, 1.13, 0.81}, 0.08}},
+                                {{0, 1.05, 0.49}, 0.11},
+                                {{0, 1.21, 0.58}, 0.21},
+                                {{0, 1.13, 0.84}, 0.085}},
                                0.03, creature);
   head.inner_blend = 0.06;
   for (const double side : {-1., 1.}) {
     head.cones.push_back(
-        {{side * 0.12, 1.32, 0.55}, {side * 0.18, 1.46, 0.52}, 0.065, 0.04});
+        {{side * 0.14, 1.34, 0.53}, {side * 0.2, 1.47, 0.5}, 0.075, 0.045});
   }
 }
 
@@ -118,7 +118,7 @@ Creature MakeQuadruped() {
                              0,
                              {0, 0.75, -0.02},
                              Vector3d::UnitZ(),
-                             0.25});  // the small of the back
+                             0.32});  // the small of the back
   AddHead(creature);
   AddLegs(creature);
   CreaturePart& tail = AddLimb("tail",
