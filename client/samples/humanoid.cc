@@ -21,71 +21,60 @@ Vector3d ElbowBend(double degrees) {
 CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
-  torso.inner_blend = 0.04;
-  // Two columns side by side, from the hips over the waist to the shoulders.
+  torso.inner_blend = 0.08;
+  // A pear: the round belly over the hips, then the narrower shoulders.
   for (const double side : {-1., 1.}) {
-    const Vector3d hip(side * 0.085, 0.96, 0);
-    const Vector3d waist(side * 0.075, 1.14, 0.01);
-    const Vector3d breast(side * 0.11, 1.31, 0.01);
-    const Vector3d shoulder(side * 0.15, 1.4, 0);
-    torso.cones.push_back({hip, waist, 0.135, 0.125});
-    torso.cones.push_back({waist, breast, 0.125, 0.14});
-    torso.cones.push_back({breast, shoulder, 0.14, 0.09});
+    const Vector3d hip(side * 0.085, 0.7, 0);
+    const Vector3d belly(side * 0.06, 0.82, 0.025);
+    const Vector3d shoulder(side * 0.085, 1.07, 0);
+    torso.cones.push_back({hip, belly, 0.18, 0.205});
+    torso.cones.push_back({belly, shoulder, 0.205, 0.13});
   }
-  torso.cones.push_back({{-0.085, 0.96, 0}, {0.085, 0.96, 0}, 0.13, 0.13});
-  torso.cones.push_back({{-0.15, 1.4, 0}, {0.15, 1.4, 0}, 0.09, 0.09});
   return torso;
 }
 
 void AddHead(Creature& creature) {
   CreaturePart& head = AddLimb("head",
-                               {{{0, 1.44, -0.01}, 0.065},
-                                {{0, 1.57, 0.005}, 0.06},
-                                {{0, 1.71, 0.0}, 0.115}},
+                               {{{0, 1.22, -0.005}, 0.075},
+                                {{0, 1.3, 0.0}, 0.1},
+                                {{0, 1.45, 0.01}, 0.2}},
                                0.03, creature);
   head.inner_blend = 0.04;
-  head.cones.push_back({{0, 1.755, -0.025}, {0, 1.72, 0.012}, 0.122, 0.115});
-  head.cones.push_back({{0, 1.645, 0.05}, {0, 1.625, 0.065}, 0.066, 0.054});
-  head.cones.push_back({{0, 1.72, 0.12}, {0, 1.68, 0.145}, 0.014, 0.02});
+  // Cheeks, the crown, a nose, a lock of hair and the ears.
+  head.cones.push_back({{-0.07, 1.42, 0.02}, {0.07, 1.42, 0.02}, 0.185, 0.185});
+  head.cones.push_back({{-0.04, 1.5, -0.02}, {0.04, 1.5, -0.02}, 0.2, 0.2});
+  head.cones.push_back({{0, 1.42, 0.2}, {0, 1.42, 0.23}, 0.04, 0.035});
+  head.cones.push_back({{0, 1.68, -0.02}, {0.01, 1.75, 0.02}, 0.05, 0.035});
+  head.cones.push_back({{0.01, 1.75, 0.02}, {0.05, 1.77, 0.07}, 0.035, 0.02});
   for (const double side : {-1., 1.}) {
-    head.cones.push_back({{side * 0.117, 1.68, -0.015},
-                          {side * 0.13, 1.72, -0.025},
-                          0.017,
-                          0.023});
+    head.cones.push_back(
+        {{side * 0.24, 1.41, -0.01}, {side * 0.265, 1.44, -0.03}, 0.045, 0.05});
   }
 }
 
 void AddArms(Creature& creature) {
-  const Vector3d shoulder(0.215, 1.385, 0);
+  const Vector3d shoulder(0.21, 1.07, 0);
   const auto at = [&](double distance, double front) -> Vector3d {
     return shoulder + distance * ArmLine() + front * Vector3d::UnitZ();
   };
   AddLimbPair("arm",
-              {{shoulder, 0.08},
-               {at(0.27, -0.005), 0.056},
-               {at(0.51, 0.005), 0.042},
-               {at(0.66, 0.01), 0.03}},
-              {{at(0.08, 0.015), at(0.17, 0.012), 0.066, 0.06},
-               {at(0.32, 0), at(0.38, 0), 0.059, 0.052},
-               {at(0.55, 0.034), at(0.61, 0.036), 0.031, 0.031},
-               {at(0.55, -0.02), at(0.61, -0.022), 0.031, 0.03},
-               {at(0.62, 0.04), at(0.68, 0.04), 0.026, 0.022},
-               {at(0.62, -0.018), at(0.68, -0.02), 0.026, 0.022},
-               {at(0.54, 0.04), at(0.59, 0.095), 0.027, 0.022}},
-              0.05, creature);
+              {{shoulder, 0.052},
+               {at(0.27, 0), 0.082},
+               {at(0.46, 0.005), 0.07},
+               {at(0.57, 0.01), 0.088}},
+              {{at(0.11, 0), at(0.18, 0), 0.085, 0.088},
+               {at(0.49, 0.06), at(0.52, 0.11), 0.04, 0.035}},
+              0.02, creature);
 }
 
 void AddLegs(Creature& creature) {
   AddLimbPair("leg",
-              {{{0.115, 0.89, 0}, 0.1},
-               {{0.155, 0.51, 0.015}, 0.064},
-               {{0.185, 0.09, -0.025}, 0.04},
-               {{0.205, 0.035, 0.13}, 0.032}},
-              {{{0.155, 0.42, -0.012}, {0.168, 0.3, -0.025}, 0.058, 0.05},
-               {{0.185, 0.045, -0.05}, {0.195, 0.04, 0.06}, 0.042, 0.04},
-               {{0.225, 0.033, 0.1}, {0.232, 0.03, 0.15}, 0.03, 0.026},
-               {{0.185, 0.033, 0.12}, {0.19, 0.03, 0.17}, 0.03, 0.027}},
-              0.045, creature);
+              {{{0.13, 0.56, 0}, 0.065},
+               {{0.15, 0.33, 0.01}, 0.092},
+               {{0.165, 0.1, 0.0}, 0.09},
+               {{0.18, 0.08, 0.14}, 0.08}},
+              {{{0.135, 0.47, 0}, {0.14, 0.42, 0}, 0.118, 0.118}}, 0.02,
+              creature);
 }
 
 CreaturePose Walk() {
@@ -106,10 +95,10 @@ CreaturePose Walk() {
 
 CreaturePose Sit() {
   CreaturePose pose{"sit", {}};
-  TurnBoth("leg", 0, {-82, 0, 0}, pose);
-  TurnBoth("leg", 1, {84, 0, 0}, pose);
+  TurnBoth("leg", 0, {-78, 0, 0}, pose);
+  TurnBoth("leg", 1, {72, 0, 0}, pose);
   TurnBoth("arm", 0, {0, 0, -26}, pose);
-  TurnBoth("arm", 0, {-38, 0, 0}, pose);
+  TurnBoth("arm", 0, {-32, 0, 0}, pose);
   TurnBoth("arm", 1, ElbowBend(45), pose);
   pose.turns.push_back({"torso", 0, {8, 0, 0}});
   pose.turns.push_back({"head", 1, {10, 25, 0}});
@@ -134,12 +123,12 @@ CreaturePose Run() {
   TurnBoth("arm", 0, {0, 0, -28}, pose);
   pose.turns.push_back({"left_arm", 0, {48, 0, 0}});
   pose.turns.push_back({"right_arm", 0, {-46, 0, 0}});
-  TurnBoth("arm", 1, ElbowBend(82), pose);
-  pose.turns.push_back({"left_leg", 0, {-72, 0, 0}});
-  pose.turns.push_back({"left_leg", 1, {78, 0, 0}});
+  TurnBoth("arm", 1, ElbowBend(62), pose);
+  pose.turns.push_back({"left_leg", 0, {-64, 0, 0}});
+  pose.turns.push_back({"left_leg", 1, {62, 0, 0}});
   pose.turns.push_back({"right_leg", 0, {28, 0, 0}});
-  pose.turns.push_back({"right_leg", 1, {68, 0, 0}});
-  pose.turns.push_back({"right_leg", 2, {30, 0, 0}});
+  pose.turns.push_back({"right_leg", 1, {56, 0, 0}});
+  pose.turns.push_back({"right_leg", 2, {20, 0, 0}});
   pose.turns.push_back({"torso", 0, {16, 10, 0}});
   pose.turns.push_back({"head", 1, {-12, 0, 0}});
   return pose;
@@ -153,7 +142,7 @@ Creature MakeHumanoid() {
   creature.description = "a person with head, two arms and two legs";
   creature.parts.push_back(Torso());
   creature.joints.push_back(
-      {0, 0, {0, 1.12, 0}, Vector3d::UnitY(), 0.16});  // waist
+      {0, 0, {0, 0.85, 0}, Vector3d::UnitY(), 0.24});  // waist
   AddHead(creature);
   AddArms(creature);
   AddLegs(creature);

@@ -39,7 +39,7 @@ CreaturePart Body() {
   body.name = "body";
   body.inner_blend = 0.12;
   body.cones = {
-      {{0, 0.3, 0}, {0, 0.48, 0.02}, 0.46, 0.3},
+      {{0, 0.27, 0}, {0, 0.48, 0.02}, 0.4, 0.29},
       {{0, 0.48, 0.02}, {0, 0.95, -0.12}, 0.29, 0.42},
       {{0, 0.95, -0.12}, {0, 1.3, -0.28}, 0.42, 0.3},
       {{-0.2, 0.62, 0.2}, {-0.23, 0.67, 0.26}, 0.1, 0.085},  // eyes
@@ -52,22 +52,21 @@ void AddTentacle(int tentacle, Creature& creature) {
   struct Station {
     double out, up, radius;
   };
-  constexpr std::array<Station, kJoints + 1> kStations = {
-      {{0.3, 0.17, 0.115},
-       {0.6, 0.11, 0.096},
-       {0.78, 0.07, 0.092},
-       {1.03, 0.06, 0.08},
-       {1.27, 0.06, 0.068},
-       {1.5, 0.07, 0.057},
-       {1.72, 0.09, 0.05},
-       {1.92, 0.12, 0.042}}};
+  constexpr std::array<Station, kJoints + 1> kStations = {{{0.37, 0.19, 0.07},
+                                                           {0.56, 0.13, 0.105},
+                                                           {0.76, 0.11, 0.118},
+                                                           {0.97, 0.1, 0.11},
+                                                           {1.17, 0.09, 0.095},
+                                                           {1.36, 0.09, 0.08},
+                                                           {1.54, 0.1, 0.065},
+                                                           {1.7, 0.12, 0.05}}};
   std::vector<LimbNode> nodes;
   for (const Station& station : kStations) {
     nodes.push_back(
         {station.out * Outward(tentacle) + station.up * Vector3d::UnitY(),
          station.radius});
   }
-  AddLimb(NameOf(tentacle), nodes, 0.06, creature);
+  AddLimb(NameOf(tentacle), nodes, 0.03, creature);
   // A tentacle has no elbows: it bends all along.
   for (CreatureJoint& joint : creature.joints) joint.width = 0.22;
 }
@@ -78,7 +77,7 @@ CreaturePose Curl() {
     const double side = i % 2 == 0 ? 1 : -1;
     pose.turns.push_back({NameOf(i), 0, Lift(i, 8)});
     for (uint32_t joint = 2; joint < kJoints; ++joint) {
-      pose.turns.push_back({NameOf(i), joint, Lift(i, 24 + 6. * joint)});
+      pose.turns.push_back({NameOf(i), joint, Lift(i, 15 + 4.5 * joint)});
       pose.turns.push_back({NameOf(i), joint, Sweep(side * 7)});
     }
   }

@@ -8,48 +8,48 @@ using Eigen::Vector3d;
 CreaturePart Torso() {
   CreaturePart torso;
   torso.name = "torso";
-  torso.inner_blend = 0.05;
+  torso.inner_blend = 0.08;
   for (const double side : {-1., 1.}) {
-    const Vector3d hip(side * 0.07, 0.97, -0.44);
-    const Vector3d belly(side * 0.05, 0.97, 0.0);
-    const Vector3d chest(side * 0.07, 0.96, 0.38);
-    torso.cones.push_back({hip, belly, 0.2, 0.19});
-    torso.cones.push_back({belly, chest, 0.19, 0.22});
+    const Vector3d hip(side * 0.07, 0.76, -0.26);
+    const Vector3d belly(side * 0.06, 0.75, 0.02);
+    const Vector3d chest(side * 0.07, 0.77, 0.26);
+    torso.cones.push_back({hip, belly, 0.215, 0.225});
+    torso.cones.push_back({belly, chest, 0.225, 0.225});
   }
   return torso;
 }
 
 void AddHead(Creature& creature) {
   CreaturePart& head = AddLimb("head",
-                               {{{0, 1.08, 0.47}, 0.135},
-                                {{0, 1.3, 0.64}, 0.1},
-                                {{0, 1.48, 0.76}, 0.1},
-                                {{0, 1.42, 1.02}, 0.055}},
-                               0.08, creature);
-  head.inner_blend = 0.05;
-  head.cones.push_back({{0, 1.51, 0.78}, {0, 1.49, 0.84}, 0.11, 0.095});
-  head.cones.push_back({{0, 1.43, 0.86}, {0, 1.395, 0.98}, 0.07, 0.05});
+                               {{{0, 0.95, 0.41}, 0.085},
+                                {{0, 1.05, 0.49}, 0.11},
+                                {{0, 1.21, 0.58}, 0.21},
+                                {{0, 1.13, 0.84}, 0.085}},
+                               0.03, creature);
+  head.inner_blend = 0.06;
   for (const double side : {-1., 1.}) {
     head.cones.push_back(
-        {{side * 0.065, 1.58, 0.72}, {side * 0.095, 1.73, 0.7}, 0.042, 0.022});
+        {{side * 0.14, 1.34, 0.53}, {side * 0.2, 1.47, 0.5}, 0.075, 0.045});
   }
 }
 
 void AddLegs(Creature& creature) {
   AddLimbPair("foreleg",
-              {{{0.17, 0.85, 0.38}, 0.1},
-               {{0.18, 0.62, 0.34}, 0.08},
-               {{0.185, 0.38, 0.375}, 0.056},
-               {{0.185, 0.17, 0.365}, 0.05},
-               {{0.185, 0.12, 0.45}, 0.05}},
-              {}, 0.06, creature);
+              {{{0.18, 0.56, 0.29}, 0.06},
+               {{0.2, 0.37, 0.28}, 0.115},
+               {{0.205, 0.22, 0.28}, 0.1},
+               {{0.21, 0.1, 0.28}, 0.1},
+               {{0.21, 0.09, 0.38}, 0.09}},
+              {{{0.19, 0.47, 0.29}, {0.195, 0.42, 0.28}, 0.105, 0.115}}, 0.02,
+              creature);
   AddLimbPair("hindleg",
-              {{{0.165, 0.86, -0.46}, 0.115},
-               {{0.18, 0.65, -0.39}, 0.09},
-               {{0.185, 0.43, -0.54}, 0.058},
-               {{0.185, 0.17, -0.5}, 0.05},
-               {{0.185, 0.12, -0.41}, 0.05}},
-              {}, 0.06, creature);
+              {{{0.18, 0.56, -0.29}, 0.06},
+               {{0.2, 0.38, -0.26}, 0.12},
+               {{0.205, 0.22, -0.3}, 0.1},
+               {{0.21, 0.1, -0.28}, 0.1},
+               {{0.21, 0.09, -0.18}, 0.09}},
+              {{{0.19, 0.47, -0.28}, {0.195, 0.42, -0.27}, 0.11, 0.12}}, 0.02,
+              creature);
 }
 
 CreaturePose Walk() {
@@ -116,17 +116,17 @@ Creature MakeQuadruped() {
   creature.parts.push_back(Torso());
   creature.joints.push_back({0,
                              0,
-                             {0, 1.0, -0.05},
+                             {0, 0.75, -0.02},
                              Vector3d::UnitZ(),
-                             0.25});  // the small of the back
+                             0.32});  // the small of the back
   AddHead(creature);
   AddLegs(creature);
   CreaturePart& tail = AddLimb("tail",
-                               {{{0, 1.08, -0.58}, 0.07},
-                                {{0, 1.12, -0.84}, 0.062},
-                                {{0, 1.0, -1.1}, 0.056},
-                                {{0, 0.82, -1.3}, 0.036}},
-                               0.05, creature);
+                               {{{0, 0.9, -0.47}, 0.05},
+                                {{0, 1.0, -0.62}, 0.095},
+                                {{0, 1.14, -0.72}, 0.11},
+                                {{0, 1.3, -0.76}, 0.045}},
+                               0.02, creature);
   tail.inner_blend = 0.04;
   creature.poses = {{"rest", {}}, Walk(), Gallop(), Graze(), Crouch()};
   return creature;

@@ -18,6 +18,7 @@ namespace {
 
 using ::testing::Each;
 using ::testing::HasSubstr;
+using ::testing::Pointwise;
 
 using Triangle = std::array<uint32_t, 3>;
 using Edge = std::pair<uint32_t, uint32_t>;
@@ -234,6 +235,15 @@ TEST_P(EverySample, HasPartsInOnePieceOfSensibleArea) {
     EXPECT_THAT(areas, Each(::testing::Gt(0.04)));
     EXPECT_GT(areas[0], 0.2);
     EXPECT_LT(areas[0], 0.6);
+  }
+}
+
+TEST_P(EverySample, HasPartsThatDependOnNoFineness) {
+  const std::vector<double> fine = AreaOfParts(Make("", 50000));
+  for (const uint32_t faces : {5000u, 7778u, 10000u}) {
+    EXPECT_THAT(AreaOfParts(Make("", faces)),
+                Pointwise(::testing::DoubleNear(0.01), fine))
+        << faces;
   }
 }
 
