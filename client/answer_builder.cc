@@ -72,15 +72,11 @@ absl::Status AnswerBuilder::Add(const v1::SegmentEvent& event) {
 }
 
 absl::Status AnswerBuilder::AddLevel(const v1::Level& level) {
-  if (level.level() != levels_.size() + 1 || level.level() > kMaxLevels) {
-    return Bad("level ", level.level(), " came after ", levels_.size());
+  if (level_ended_ || level.level() != levels_.size()) {
+    MARROW_RETURN_IF_ERROR(BeginLevel(level.level()));
   }
-  levels_.emplace_back().level.level = level.level();
-  // A vertex lies in at most as many segments as it has faces, and with level
-  // 1 the root comes too.
-  size_t medial_budget = size_t{6} * num_faces_;
   for (const v1::Node& node : level.nodes()) {
-    MARROW_RETURN_IF_ERROR(AddNode(node, medial_budget));
+    MARROW_RETURN_IF_ERROR(AddNode(node));
   }
   for (const v1::Split& split : level.splits()) {
     MARROW_RETURN_IF_ERROR(AddSplit(split));
@@ -88,33 +84,54 @@ absl::Status AnswerBuilder::AddLevel(const v1::Level& level) {
   return absl::OkStatus();
 }
 
-absl::Status AnswerBuilder::AddNode(const v1::Node& node,
-                                    size_t& medial_budget) {
-  // Every split has two children at least, so a tree over m faces has fewer
-  // than 2 m nodes.
-  if (nodes_.size() >= size_t{2} * num_faces_) return Bad("too many nodes");
+absl::Status AnswerBuilder::BeginLevel(uint32_t level) {
+  if (level != levels_.size() + 1 || level > kMaxLevels) {
+    return Bad("level ", level, " came after ", levels_.size());
+  }
+  levels_.emplace_back().level = level;
+  level_ended_ = false;
+  last_node_ = kNone;
+  // A vertex lies in at most as many segments as it has faces, and with level
+  // 1 the root comes too.
+  medial_budget_ = size_t{6} * num_faces_;
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::AddNode(const v1::Node& node) {
+  if (node.id() != last_node_ || node.has_parent()) {
+    MARROW_RETURN_IF_ERROR(BeginNode(node));
+  }
   const std::string& medial = node.medial_structure();
   if (medial.size() % sizeof(uint32_t) != 0 ||
-      medial.size() / sizeof(uint32_t) > medial_budget) {
+      medial.size() / sizeof(uint32_t) > medial_budget_) {
     return Bad("the medial structure of node ", node.id(), " has ",
                medial.size(), " bytes");
   }
+  std::vector<uint32_t>& points = nodes_[node.id()].medial_structure;
+  for (uint32_t point : UnpackUint32(medial)) {
+    if (point >= num_points_) {
+      return Bad("node ", node.id(), " has point ", point, " of ", num_points_);
+    }
+    points.push_back(point);
+    --medial_budget_;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AnswerBuilder::BeginNode(const v1::Node& node) {
+  // Every split has two children at least, so a tree over m faces has fewer
+  // than 2 m nodes.
+  if (nodes_.size() >= size_t{2} * num_faces_) return Bad("too many nodes");
   SegmentNode result;
   result.id = node.id();
   result.parent = node.has_parent() ? node.parent() : kNone;
   result.level = node.level();
   result.area = node.area();
   result.centroid = ToPoint(node.centroid());
-  result.medial_structure = UnpackUint32(medial);
-  medial_budget -= result.medial_structure.size();
-  for (uint32_t point : result.medial_structure) {
-    if (point >= num_points_) {
-      return Bad("node ", node.id(), " has point ", point, " of ", num_points_);
-    }
-  }
   if (!nodes_.emplace(node.id(), std::move(result)).second) {
     return Bad("node ", node.id(), " came twice");
   }
+  last_node_ = node.id();
   return absl::OkStatus();
 }
 
@@ -132,8 +149,7 @@ absl::Status AnswerBuilder::AddSplit(const v1::Split& split) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<AnswerBuilder::PartialLevel*> AnswerBuilder::LevelOf(
-    uint32_t level) {
+absl::StatusOr<Level*> AnswerBuilder::LevelOf(uint32_t level) {
   if (level == 0 || level > levels_.size()) {
     return Bad("level ", level, " was not announced");
   }
@@ -141,14 +157,15 @@ absl::StatusOr<AnswerBuilder::PartialLevel*> AnswerBuilder::LevelOf(
 }
 
 absl::Status AnswerBuilder::AddLabels(const v1::Labels& labels) {
-  MARROW_ASSIGN_OR_RETURN(PartialLevel * partial, LevelOf(labels.level()));
+  MARROW_ASSIGN_OR_RETURN(Level * level, LevelOf(labels.level()));
+  level_ended_ = true;
   const bool faces = labels.domain() == v1::LABEL_DOMAIN_FACE;
   if (!faces && labels.domain() != v1::LABEL_DOMAIN_VERTEX) {
     return absl::OkStatus();  // a domain of later servers
   }
   const uint32_t expected = faces ? num_faces_ : num_points_;
   std::vector<uint32_t>& known =
-      faces ? partial->level.face_labels : partial->level.vertex_labels;
+      faces ? level->face_labels : level->vertex_labels;
   const std::string& bytes = labels.labels();
   if (labels.total_count() != expected) {
     return Bad("it has ", labels.total_count(), " labels for ", expected,
@@ -168,12 +185,16 @@ absl::Status AnswerBuilder::AddLabels(const v1::Labels& labels) {
 }
 
 absl::Status AnswerBuilder::AddSkeleton(const v1::Skeleton& skeleton) {
-  MARROW_ASSIGN_OR_RETURN(PartialLevel * partial, LevelOf(skeleton.level()));
-  if (partial->has_skeleton) return Bad("a skeleton came twice");
-  partial->has_skeleton = true;
+  MARROW_ASSIGN_OR_RETURN(Level * level, LevelOf(skeleton.level()));
+  level_ended_ = true;
+  std::vector<Joint>& joints = level->skeleton.joints;
   for (const v1::Joint& joint : skeleton.joints()) {
+    // A tree over at most as many segments as faces, a joint on every link.
+    if (joints.size() >= size_t{2} * num_faces_ || joint.segments_size() > 2) {
+      return Bad("a skeleton is larger than its mesh");
+    }
     Joint result;
-    result.id = static_cast<uint32_t>(partial->level.skeleton.joints.size());
+    result.id = static_cast<uint32_t>(joints.size());
     result.parent = joint.has_parent() ? joint.parent() : kNone;
     if (joint.has_parent() ? result.parent >= result.id : result.id != 0) {
       return Bad("joint ", result.id, " has no parent before it");
@@ -184,7 +205,7 @@ absl::Status AnswerBuilder::AddSkeleton(const v1::Skeleton& skeleton) {
     for (uint32_t segment : result.segments) {
       if (!nodes_.contains(segment)) return Bad("no node ", segment);
     }
-    partial->level.skeleton.joints.push_back(std::move(result));
+    joints.push_back(std::move(result));
   }
   return absl::OkStatus();
 }
@@ -223,8 +244,7 @@ absl::Status AnswerBuilder::CheckTree() const {
   return absl::OkStatus();
 }
 
-absl::Status AnswerBuilder::CheckLevel(const PartialLevel& partial) const {
-  const Level& level = partial.level;
+absl::Status AnswerBuilder::CheckLevel(const Level& level) const {
   if (level.face_labels.size() != num_faces_ ||
       level.vertex_labels.size() != num_points_) {
     return Bad("level ", level.level, " lacks labels");
@@ -245,10 +265,10 @@ absl::StatusOr<Segmentation> AnswerBuilder::Finish() {
   if (levels_.empty()) return Bad("it has no level");
   MARROW_RETURN_IF_ERROR(CheckTree());
   Segmentation result;
-  for (PartialLevel& partial : levels_) {
-    MARROW_RETURN_IF_ERROR(CheckLevel(partial));
-    result.levels.push_back(std::move(partial.level));
+  for (const Level& level : levels_) {
+    MARROW_RETURN_IF_ERROR(CheckLevel(level));
   }
+  result.levels = std::move(levels_);
   for (auto& [id, node] : nodes_) result.nodes.push_back(std::move(node));
   report_["warnings"] = std::move(warnings_);
   result.report = std::move(report_);

@@ -2,6 +2,7 @@
 #ifndef MARROW_CLIENT_ANSWER_BUILDER_H_
 #define MARROW_CLIENT_ANSWER_BUILDER_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -31,28 +32,29 @@ class AnswerBuilder {
   absl::StatusOr<Segmentation> Finish();
 
  private:
-  // Labels of one level and domain that have come so far.
-  struct PartialLevel {
-    Level level;
-    bool has_skeleton = false;
-  };
-
   absl::Status AddLevel(const v1::Level& level);
-  absl::Status AddNode(const v1::Node& node, size_t& medial_budget);
+  absl::Status BeginLevel(uint32_t level);
+  absl::Status AddNode(const v1::Node& node);
+  absl::Status BeginNode(const v1::Node& node);
   absl::Status AddSplit(const v1::Split& split);
   absl::Status AddLabels(const v1::Labels& labels);
   absl::Status AddSkeleton(const v1::Skeleton& skeleton);
   absl::Status AddCompleted(const v1::Completed& completed);
-  absl::StatusOr<PartialLevel*> LevelOf(uint32_t level);
+  absl::StatusOr<Level*> LevelOf(uint32_t level);
   absl::Status CheckTree() const;
-  absl::Status CheckLevel(const PartialLevel& partial) const;
+  absl::Status CheckLevel(const Level& level) const;
 
   const uint32_t num_faces_;
   const uint32_t num_points_;
   uint64_t sequence_ = 0;
   bool completed_ = false;
   std::map<uint32_t, SegmentNode> nodes_;
-  std::vector<PartialLevel> levels_;  // level i + 1 at i
+  std::vector<Level> levels_;  // level i + 1 at i
+  // Of the newest level: whether labels or joints have come, the node that
+  // came last, and how many medial points may still come.
+  bool level_ended_ = false;
+  uint32_t last_node_ = kNone;
+  size_t medial_budget_ = 0;
   nlohmann::json report_ = nlohmann::json::object();
   nlohmann::json warnings_ = nlohmann::json::array();
   nlohmann::json timings_ = nlohmann::json::object();

@@ -131,6 +131,51 @@ TEST(AnswerBuilderTest, PutsAnAnswerTogether) {
   EXPECT_EQ(answer->cache["outcome"], "hit");
 }
 
+// The first `count` items of a list, removed from it.
+template <typename List>
+void Truncate(List* list, int count) {
+  list->DeleteSubrange(count, list->size() - count);
+}
+
+TEST(AnswerBuilderTest, JoinsTheMessagesOfALargeLevel) {
+  std::vector<v1::SegmentEvent> events = GoodAnswer();
+  v1::SegmentEvent rest = events[kLevelEvent];
+  Truncate(events[kLevelEvent].mutable_level()->mutable_nodes(), 2);
+  events[kLevelEvent].mutable_level()->clear_splits();
+  v1::Level& level = *rest.mutable_level();
+  level.mutable_nodes()->DeleteSubrange(0, 1);
+  level.mutable_nodes(0)->Clear();
+  level.mutable_nodes(0)->set_id(1);
+  level.mutable_nodes(0)->set_medial_structure(Pack({4}));
+  events.insert(events.begin() + kLevelEvent + 1, rest);
+
+  const absl::StatusOr<Segmentation> answer = Build(events);
+  ASSERT_TRUE(answer.ok()) << answer.status();
+  EXPECT_EQ(answer->levels.size(), 1u);
+  ASSERT_EQ(answer->nodes.size(), 3u);
+  EXPECT_THAT(answer->nodes[0].children, ElementsAre(1, 2));
+  EXPECT_THAT(answer->nodes[1].medial_structure, ElementsAre(1, 2, 4));
+  EXPECT_EQ(answer->nodes[1].parent, 0u);
+  EXPECT_EQ(answer->nodes[1].area, 2);
+  EXPECT_THAT(answer->nodes[2].medial_structure, ElementsAre(2, 3));
+}
+
+TEST(AnswerBuilderTest, JoinsTheMessagesOfALargeSkeleton) {
+  std::vector<v1::SegmentEvent> events = GoodAnswer();
+  v1::SegmentEvent rest = events[kSkeletonEvent];
+  Truncate(events[kSkeletonEvent].mutable_skeleton()->mutable_joints(), 1);
+  rest.mutable_skeleton()->mutable_joints()->DeleteSubrange(0, 1);
+  events.insert(events.begin() + kSkeletonEvent + 1, rest);
+
+  const absl::StatusOr<Segmentation> answer = Build(events);
+  ASSERT_TRUE(answer.ok()) << answer.status();
+  const std::vector<Joint>& joints = answer->levels[0].skeleton.joints;
+  ASSERT_EQ(joints.size(), 2u);
+  EXPECT_THAT(joints[0].segments, ElementsAre(1));
+  EXPECT_EQ(joints[1].id, 1u);
+  EXPECT_EQ(joints[1].parent, 0u);
+}
+
 TEST(AnswerBuilderTest, RefusesAGapInTheSequence) {
   AnswerBuilder builder(kFaces, kPoints);
   v1::SegmentEvent event;
@@ -197,6 +242,12 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"LevelsOutOfOrder", [](Events& e) { LevelOf(e).set_level(2); }},
         Lie{"LevelTwice",
             [](Events& e) { e.insert(e.begin(), e[kLevelEvent]); }},
+        Lie{"LevelThatGoesOnAfterItsLabels",
+            [](Events& e) {
+              v1::SegmentEvent more;
+              more.mutable_level()->set_level(1);
+              e.insert(e.begin() + kSkeletonEvent, more);
+            }},
         Lie{"NodeTwice",
             [](Events& e) { *LevelOf(e).add_nodes() = LevelOf(e).nodes(1); }},
         Lie{"MoreNodesThanATreeHas",
@@ -259,6 +310,20 @@ INSTANTIATE_TEST_SUITE_P(
                   .mutable_skeleton()
                   ->mutable_joints(0)
                   ->set_segments(0, 99);
+            }},
+        Lie{"JointOfThreeSegments",
+            [](Events& e) {
+              v1::Joint& joint =
+                  *e[kSkeletonEvent].mutable_skeleton()->mutable_joints(0);
+              joint.add_segments(1);
+              joint.add_segments(2);
+            }},
+        Lie{"SkeletonLargerThanTheMesh",
+            [](Events& e) {
+              v1::Skeleton& skeleton = *e[kSkeletonEvent].mutable_skeleton();
+              for (int i = 0; i < 7; ++i) {
+                skeleton.add_joints()->set_parent(0);
+              }
             }},
         Lie{"SkeletonTwice",
             [](Events& e) {
