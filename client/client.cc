@@ -1,12 +1,9 @@
 #include "client/client.h"
 
-#include <grpcpp/generic/generic_stub.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/synchronization/notification.h"
 #include "client/answer_builder.h"
 #include "client/rpc_status.h"
 #include "client/spectrum_builder.h"
@@ -14,6 +11,7 @@
 #include "core/base/digest.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "grpc/health/v1/health.grpc.pb.h"
 
 namespace marrow::client {
 namespace {
@@ -54,13 +52,6 @@ absl::Status ReadAll(CallGroup::Context& context,
     }
   }
   return FromRpcStatus(reader.Finish());
-}
-
-// The answer's one field is an enum whose 1 is SERVING.
-bool IsServing(const grpc::ByteBuffer& response) {
-  grpc::Slice slice;
-  return response.DumpToSingleSlice(&slice).ok() && slice.size() == 2 &&
-         slice.begin()[0] == 0x08 && slice.begin()[1] == 0x01;
 }
 
 }  // namespace
@@ -159,24 +150,15 @@ absl::StatusOr<v1::GetCapabilitiesResponse> Client::GetCapabilities(
 
 absl::Status Client::CheckHealth(absl::Duration timeout) {
   CallGroup::Context context(calls_, absl::Now() + timeout);
-  // A request without bytes asks for the server as a whole.
-  const grpc::Slice nothing;
-  const grpc::ByteBuffer request(&nothing, 1);
-  grpc::ByteBuffer response;
-  grpc::Status status;
-  absl::Notification done;
-  grpc::GenericStub(channel_).UnaryCall(
-      context.get(), "/grpc.health.v1.Health/Check", {}, &request, &response,
-      [&](grpc::Status result) {
-        status = std::move(result);
-        done.Notify();
-      });
-  done.WaitForNotification();
-  MARROW_RETURN_IF_ERROR(FromRpcStatus(status));
-  return IsServing(response) ? absl::OkStatus()
-                             : absl::UnavailableError(
-                                   "the server is not serving: it starts, "
-                                   "or it is about to stop");
+  grpc::health::v1::HealthCheckResponse response;
+  MARROW_RETURN_IF_ERROR(
+      FromRpcStatus(grpc::health::v1::Health::NewStub(channel_)->Check(
+          context.get(), {}, &response)));
+  return response.status() == grpc::health::v1::HealthCheckResponse::SERVING
+             ? absl::OkStatus()
+             : absl::UnavailableError(
+                   "the server is not serving: it starts, "
+                   "or it is about to stop");
 }
 
 absl::Status Client::WithMesh(const Payload& payload, absl::Time deadline,

@@ -1,12 +1,15 @@
 #include "server/capabilities_service.h"
 
+#include <algorithm>
+
 #include "server/unary_call.h"
 
 namespace marrow {
 namespace {
 
 void SetLimits(const ServerOptions& options, v1::MeshLimits* limits) {
-  limits->set_max_inline_mesh_bytes(options.max_inline_mesh_bytes);
+  limits->set_max_inline_mesh_bytes(
+      std::min(options.max_inline_mesh_bytes, options.mesh_limits.max_bytes));
   limits->set_max_mesh_bytes(options.mesh_limits.max_bytes);
   limits->set_max_faces(options.mesh_limits.max_faces);
   limits->set_max_vertices(options.mesh_limits.max_vertices);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "absl/strings/numbers.h"
 #include "server/json_log.h"
 #include "server/server.h"
 
@@ -52,11 +54,38 @@ then ends. A second one ends at once.
 Exit codes: 0 after SIGTERM or SIGINT; 1 wrong flags; 2 cannot listen, for
 instance because the port is taken; 130 or 143 ended by a second signal.)";
 
+// HOST:PORT. gRPC would take a bare host for port 443.
+std::string CheckAddress(const std::string& text) {
+  const size_t colon = text.rfind(':');
+  uint32_t port = 0;
+  const bool good = colon != std::string::npos && colon > 0 &&
+                    absl::SimpleAtoi(text.substr(colon + 1), &port) &&
+                    port <= 65535;
+  return good ? "" : "'" + text + "' is not HOST:PORT";
+}
+
+std::string CheckFinite(const std::string& text) {
+  double value = 0;
+  return absl::SimpleAtod(text, &value) && std::isfinite(value)
+             ? ""
+             : "'" + text + "' is no number";
+}
+
+// What CLI11 made of a size; it lets -1 wrap around.
+std::string CheckSize(const std::string& text) {
+  constexpr uint64_t kMost = uint64_t{1} << 50;
+  uint64_t value = 0;
+  return absl::SimpleAtoi(text, &value) && value <= kMost
+             ? ""
+             : "must be 0 to 1 PiB";
+}
+
 void AddLimits(CLI::App& app, ServerOptions& options) {
   const auto bytes = CLI::AsSizeValue(false);
   app.add_option("--max-mesh-bytes", options.mesh_limits.max_bytes,
                  "Largest mesh that is taken, such as 64MiB")
       ->transform(bytes)
+      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--max-faces", options.mesh_limits.max_faces,
                  "Most faces of a mesh")
@@ -70,10 +99,12 @@ void AddLimits(CLI::App& app, ServerOptions& options) {
                  "Memory for eigen-pairs of earlier calls, such as 1GiB; 0 "
                  "keeps none")
       ->transform(bytes)
+      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--mesh-store-bytes", options.mesh_store_bytes,
                  "Memory for uploaded meshes; at least --max-mesh-bytes")
       ->transform(bytes)
+      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--threads", options.compute_threads,
                  "Threads that compute, a call each; 0: one a core")
@@ -89,6 +120,7 @@ void AddLimits(CLI::App& app, ServerOptions& options) {
 void AddFlags(CLI::App& app, Flags& flags) {
   app.add_option("--listen", flags.options.listen,
                  "HOST:PORT to listen on; port 0 takes a free one")
+      ->check(CheckAddress)
       ->capture_default_str();
   app.add_option("--port", flags.port, "Short for --listen 127.0.0.1:PORT")
       ->check(CLI::Range(0, 65535))
@@ -96,6 +128,7 @@ void AddFlags(CLI::App& app, Flags& flags) {
   AddLimits(app, flags.options);
   app.add_option("--grace", flags.grace_seconds,
                  "Seconds that running calls have to finish after SIGTERM")
+      ->check(CheckFinite)
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   app.add_option("--log-level", flags.log_level, "Least level that is logged")
@@ -106,6 +139,9 @@ void AddFlags(CLI::App& app, Flags& flags) {
                "Does not tell callers the services by gRPC reflection");
   app.set_version_flag("--version", std::string("marrowd ") + marrow::kVersion);
   app.footer(kFooter);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("marrowd: ") + error.what() + "; see marrowd --help\n";
+  });
 }
 
 sigset_t StopSignals() {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kMaxDigestsAsked = 1000;
 
-// Decoding, welding and splitting, on a machine of today; measured like
-// PredictSolverSeconds().
+// Decoding, welding and splitting into three levels; measured on meshes of
+// 5,000 to 50,000 faces, and good to a factor of two.
 constexpr double kSecondsAFace = 2e-5;
 constexpr uint64_t kBytesAFace = 600;
 

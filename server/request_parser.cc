@@ -75,18 +75,27 @@ absl::Status ParseLevels(const v1::OutputSelection& message, uint32_t deepest,
   return absl::OkStatus();
 }
 
+absl::Status CheckSize(uint64_t size_bytes, const ServerOptions& limits,
+                       const std::string& field) {
+  const uint64_t most = limits.mesh_limits.max_bytes;
+  if (size_bytes >= 1 && size_bytes <= most) return absl::OkStatus();
+  return InvalidField(
+      field, absl::StrCat("is ", size_bytes, " bytes; must be 1 to ", most,
+                          ", this server's greatest mesh"));
+}
+
 absl::StatusOr<Payload> KeepInline(const std::string& bytes,
                                    const ServerOptions& limits,
                                    MeshStore& store) {
   if (bytes.empty()) {
     return InvalidField("mesh.draco", "is empty; send the bytes of a mesh");
   }
-  const uint64_t most =
-      std::min(limits.max_inline_mesh_bytes, limits.mesh_limits.max_bytes);
-  if (bytes.size() > most) {
+  MARROW_RETURN_IF_ERROR(CheckSize(bytes.size(), limits, "mesh.draco"));
+  if (bytes.size() > limits.max_inline_mesh_bytes) {
     return InvalidField(
         "mesh.draco",
-        absl::StrCat("has ", bytes.size(), " bytes, more than the ", most,
+        absl::StrCat("has ", bytes.size(), " bytes, more than the ",
+                     limits.max_inline_mesh_bytes,
                      " that a request may hold; upload it with "
                      "MeshStoreService.UploadMesh and send its digest"));
   }
@@ -126,13 +135,8 @@ absl::StatusOr<MeshDigest> ParseMeshDigest(const v1::MeshDigest& digest,
   }
   std::copy(sha256.begin(), sha256.end(), result.sha256.bytes.begin());
   result.size_bytes = digest.size_bytes();
-  const uint64_t most = limits.mesh_limits.max_bytes;
-  if (result.size_bytes < 1 || result.size_bytes > most) {
-    return InvalidField(
-        field + ".size_bytes",
-        absl::StrCat("is ", result.size_bytes, "; must be 1 to ", most,
-                     ", this server's greatest mesh"));
-  }
+  MARROW_RETURN_IF_ERROR(
+      CheckSize(result.size_bytes, limits, field + ".size_bytes"));
   return result;
 }
 

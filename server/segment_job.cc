@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/event_builder.h"
+#include "server/mesh_warnings.h"
 #include "server/run_guarded.h"
 
 namespace marrow {
@@ -63,7 +64,12 @@ class JobSink : public Sink {
     geometry_digest_ = mesh.geometry_digest;
     v1::SegmentEvent event;
     SetMeshReport(mesh.report, event.mutable_mesh_report());
-    return job_.Append(std::move(event));
+    job_.Append(std::move(event));
+    for (v1::Warning& warning : WarningsAbout(mesh.report)) {
+      *event.mutable_warning() = std::move(warning);
+      job_.Append(event);
+    }
+    return Going();
   }
 
   bool OnLevel(const LevelResult& result) override {

@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
+#include "grpc/health/v1/health.pb.h"
 #include "server/capabilities_service.h"
 #include "server/engine.h"
 #include "server/mesh_store_service.h"
@@ -69,7 +70,11 @@ class ReflectionOption final : public grpc::ServerBuilderOption {
     std::erase_if(*plugins, [&ours](const auto& plugin) {
       return plugin->name() == ours->name();
     });
-    if (wanted_) plugins->push_back(std::move(ours));
+    if (!wanted_) return;
+    plugins->push_back(std::move(ours));
+    // gRPC's own health service comes without a descriptor, and tools that meet
+    // a service without one give up on all; this links it in.
+    grpc::health::v1::HealthCheckRequest::descriptor();
   }
 
  private:

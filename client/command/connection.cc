@@ -1,5 +1,6 @@
 #include "client/command/connection.h"
 
+#include <chrono>
 #include <utility>
 
 #include "core/base/status_macros.h"
@@ -36,6 +37,7 @@ absl::StatusOr<std::unique_ptr<Connection>> Embed(int threads) {
   options.listen.clear();
   options.compute_threads = threads;
   options.reflection = false;
+  options.default_deadline = std::chrono::hours(24 * 365);
   MARROW_ASSIGN_OR_RETURN(std::unique_ptr<Server> server,
                           Server::Start(options));
   return std::make_unique<Embedded>(std::move(server));

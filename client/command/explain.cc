@@ -20,6 +20,9 @@ std::string OptionOf(const std::string& field) {
   return "";
 }
 
+// How Client::Connect() begins.
+constexpr char kCannotReach[] = "cannot reach";
+
 bool IsUnreachable(const absl::Status& status) {
   return absl::IsUnavailable(status) && ReasonOf(status).empty();
 }
@@ -37,6 +40,10 @@ std::string Explain(const absl::Status& status) {
       message.erase(option.size(), 1);
     }
     return message;
+  }
+  if (IsUnreachable(status) && !message.starts_with(kCannotReach)) {
+    return absl::StrCat("the server was lost (", message,
+                        "): see whether it still runs, and try again");
   }
   if (absl::IsDeadlineExceeded(status)) {
     return absl::StrCat("not done in time (", message,

@@ -24,7 +24,13 @@ int RunHealth(const std::string& server) {
     absl::PrintF("%s: serving\n", address);
     return kExitOk;
   }
-  absl::FPrintF(stderr, "marrow: %s: %s\n", address, Explain(status));
+  const std::string what =
+      client.ok() ? Explain(status)
+                  : absl::StrFormat(
+                        "nothing answers (waited %s): start marrowd there, or "
+                        "correct --server or MARROW_SERVER",
+                        absl::FormatDuration(kPatience));
+  absl::FPrintF(stderr, "marrow: %s: %s\n", address, what);
   return client.ok() ? kExitFailed : kExitUnreachable;
 }
 

@@ -1,27 +1,53 @@
 // The `marrow` command.
-#include <cerrno>
+#include <fcntl.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <initializer_list>
 
 #include "client/command/exit_code.h"
 #include "client/command/parse.h"
 
+namespace {
+
+volatile std::sig_atomic_t reader_is_gone = 0;
+
+void OnBrokenPipe(int) { reader_is_gone = 1; }
+
+// A file opened in the place of a closed standard stream would receive what is
+// printed. What stands in for an output cannot be written to, so that the
+// loss is noticed.
+void OpenStandardStreams() {
+  for (const int fd : {0, 1, 2}) {
+    if (fcntl(fd, F_GETFD) < 0) open("/dev/null", O_RDONLY);
+  }
+}
+
+// Whether all that was printed has gone out, or nobody wants it.
+bool FlushOutput() {
+  return (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) ||
+         reader_is_gone != 0;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   // A reader that went away, as in `marrow spectrum x.off | head`, is no
   // reason to leave results half written.
-  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGPIPE, OnBrokenPipe);
+  OpenStandardStreams();
   const int code = marrow::client::RunCommandLine(argc, argv);
   if (code > marrow::client::kExitSignal) {
     // Threads of the service in this process may still run.
     std::fflush(stdout);
     std::_Exit(code);
   }
-  errno = 0;
-  if ((std::fflush(stdout) != 0 || std::ferror(stdout)) && errno != EPIPE) {
-    std::fprintf(stderr, "marrow: cannot write to standard output: %s\n",
-                 std::strerror(errno));
+  if (!FlushOutput()) {
+    std::fputs(
+        "marrow: cannot write to standard output: it is closed, or its disk "
+        "is full\n",
+        stderr);
     return code == 0 ? marrow::client::kExitFailed : code;
   }
   return code;

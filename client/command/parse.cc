@@ -1,9 +1,12 @@
 #include "client/command/parse.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <string>
 
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
 #include "client/command/arguments.h"
 #include "client/command/commands.h"
 #include "client/command/exit_code.h"
@@ -64,6 +67,29 @@ constexpr char kHealthFooter[] =
     R"(Exit code 0 where the server takes calls, 1 where it answers that it does not,
 3 where nothing answers.)";
 
+// Checks of an option's text: empty where it is well.
+
+std::string CheckNumber(const std::string& text) {
+  double value = 0;
+  return absl::SimpleAtod(text, &value)
+             ? ""
+             : absl::StrCat("'", text, "' is no number");
+}
+
+std::string CheckWholeNumber(const std::string& text) {
+  uint32_t value = 0;
+  return absl::SimpleAtoi(text, &value)
+             ? ""
+             : absl::StrCat("'", text, "' is no whole number");
+}
+
+std::string CheckSeconds(const std::string& text) {
+  double value = 0;
+  return absl::SimpleAtod(text, &value) && value > 0 && std::isfinite(value)
+             ? ""
+             : absl::StrCat("'", text, "' is no number of seconds above 0");
+}
+
 void AddServer(CLI::App& app, std::string& server, const char* otherwise) {
   app.add_option(
          "--server", server,
@@ -76,11 +102,11 @@ void AddService(CLI::App& app, ServiceArguments& service) {
   AddServer(app, service.server, "the work is done in this process");
   app.add_option("--timeout", service.timeout,
                  "Give a file up after this many seconds")
-      ->check(CLI::PositiveNumber)
+      ->check(CheckSeconds)
       ->type_name("SECONDS");
   app.add_option("--quantize", service.quantize,
                  "Send coordinates with this many bits, 1 to 30; without it "
-                 "they are sent exactly")
+                 "as 32-bit floats")
       ->check(CLI::Range(1, 30))
       ->type_name("BITS");
   app.add_flag("--json", service.json, "Write JSON to standard output");
@@ -94,6 +120,7 @@ void AddPairs(CLI::App& app, const std::string& names,
               std::optional<uint32_t>& pairs) {
   app.add_option(names, pairs,
                  "Eigen-pairs besides the constant one, 2 to 1000 (200)")
+      ->check(CheckWholeNumber)
       ->type_name("N");
 }
 
@@ -101,18 +128,23 @@ void AddPairs(CLI::App& app, const std::string& names,
 void AddParameters(CLI::App& app, SegmentArguments& arguments) {
   app.add_option("--kappa", arguments.kappa,
                  "Higher gives fewer segments, 0.1 to 10 (1.5)")
+      ->check(CheckNumber)
       ->type_name("X");
   app.add_option("--delta", arguments.delta,
                  "Where the diffusion map is cut, 0.001 to 0.999 (0.1)")
+      ->check(CheckNumber)
       ->type_name("X");
   app.add_option("--epsilon", arguments.epsilon,
                  "How thick medial structures are, 0 to 1 (0.01)")
+      ->check(CheckNumber)
       ->type_name("X");
   app.add_option("--tolerance", arguments.tolerance,
                  "Share of vertices that may still move, 0 to 0.5 (0.01)")
+      ->check(CheckNumber)
       ->type_name("X");
   AddPairs(app, "--pairs", arguments.pairs);
   app.add_option("--levels", arguments.levels, "Depth of the tree, 1 to 8 (3)")
+      ->check(CheckWholeNumber)
       ->type_name("N");
 }
 
@@ -178,6 +210,7 @@ void AddSample(CLI::App& root, SampleArguments& arguments) {
       ->type_name("FILE.seg");
   app.add_option("--faces", arguments.faces,
                  "Number of faces, 5000 to 50000 (10000)")
+      ->check(CheckWholeNumber)
       ->type_name("N");
   app.callback([&arguments, list] {
     if (list->count() > 0) return;
@@ -209,6 +242,19 @@ int Run(const CLI::App& app, const Arguments& arguments) {
   return RunHealth(arguments.health_server);
 }
 
+// One line that says what is wrong and where help is.
+std::string Complaint(const CLI::App* app, const CLI::Error& error) {
+  const auto subcommands = app->get_subcommands();
+  std::string what = error.what();
+  if (subcommands.empty() && !app->remaining().empty() &&
+      !app->remaining()[0].starts_with('-')) {
+    what = absl::StrCat("there is no subcommand '", app->remaining()[0], "'");
+  }
+  return absl::StrCat(
+      "marrow: ", what, "; see marrow ",
+      subcommands.empty() ? "" : subcommands[0]->get_name() + " ", "--help\n");
+}
+
 }  // namespace
 
 int RunCommandLine(int argc, const char* const* argv) {
@@ -218,6 +264,7 @@ int RunCommandLine(int argc, const char* const* argv) {
                        "Print the version and exit");
   app.require_subcommand(1);
   app.footer(kFooter);
+  app.failure_message(Complaint);
   AddSegment(app, arguments.segment);
   AddInspect(app, arguments.inspect);
   AddSpectrum(app, arguments.spectrum);

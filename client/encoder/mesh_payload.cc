@@ -71,6 +71,14 @@ absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
   MARROW_ASSIGN_OR_RETURN(payload.mesh, ParseMesh(path, bytes));
   absl::StatusOr<EncodedMesh> encoded = EncodeMesh(payload.mesh, options);
   if (!encoded.ok()) return WithPath(path, encoded.status());
+  // Draco cannot hold fewer than three points; all faces are degenerate then.
+  if (encoded->order.NumDecodedPoints() < 3) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ": all corners of its faces lie at ",
+                     encoded->order.NumDecodedPoints() == 1 ? "one position"
+                                                            : "two positions",
+                     "; Marrow needs a surface"));
+  }
   payload.encoded = *std::move(encoded);
   return payload;
 }

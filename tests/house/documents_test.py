@@ -3,10 +3,12 @@
 MARROW_BIN names the folder of the programs.
 """
 
+import json
 import os
 import re
 import shlex
 import subprocess
+import tempfile
 import unittest
 
 import tree
@@ -37,6 +39,15 @@ def commands(program):
                     yield path, words[1:]
 
 
+def keys_of(value):
+    """The names of all fields, at any depth."""
+    if isinstance(value, dict):
+        return set(value).union(*map(keys_of, value.values()))
+    if isinstance(value, list):
+        return set().union(*map(keys_of, value))
+    return set()
+
+
 def verbs():
     return re.findall(r"^  ([a-z]+)  ", run("./dev"), re.MULTILINE)
 
@@ -55,6 +66,20 @@ class DocumentsTest(unittest.TestCase):
         self.assertIn("demo", verbs())
         for verb in verbs():
             self.assertIn(f"./dev {verb}", tree.text("README.md"))
+
+    def test_every_field_of_the_json_file_is_described(self):
+        with tempfile.TemporaryDirectory() as folder:
+            marrow = os.path.join(BIN, "marrow")
+            mesh = os.path.join(folder, "me.off")
+            run(marrow, "sample", "octopus", "--faces", "5000", "-o", mesh)
+            run(marrow, "segment", mesh, "-o", folder)
+            with open(os.path.join(folder, "me.json"),
+                      encoding="utf-8") as file:
+                keys = keys_of(json.load(file))
+        self.assertIn("medial_structure", keys)
+        words = set(re.findall(r"\w+", " ".join(
+            re.findall(r"`([^`]*)`", tree.text("docs/json.md")))))
+        self.assertEqual(keys - words, set())
 
     def test_verbs_exist(self):
         found = list(commands("dev"))

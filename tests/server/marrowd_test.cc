@@ -189,11 +189,17 @@ TEST(MarrowdTest, WrongFlagsAreSaid) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"--threads", "-1"},
         {"--max-mesh-bytes", "many"},
+        {"--max-mesh-bytes", "-4"},
         {"--no-such-flag"},
+        {"--listen", ""},
+        {"--listen", "127.0.0.1"},
+        {"--listen", "127.0.0.1:http"},
+        {"--listen", "127.0.0.1:65536"},
+        {"--port", "0", "--grace", "nan"},
         {"--port", "0", "--mesh-store-bytes", "1KiB"}}) {
     Daemon daemon(arguments);
-    EXPECT_EQ(daemon.Wait(), 1);
-    EXPECT_NE(daemon.Errors(), "");
+    EXPECT_EQ(daemon.Wait(), 1) << arguments.back();
+    EXPECT_EQ(daemon.Errors().rfind("marrowd: ", 0), 0u) << arguments.back();
   }
 }
 

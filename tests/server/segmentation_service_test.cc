@@ -19,6 +19,8 @@
 #include "absl/synchronization/notification.h"
 #include "core/base/crc32c.h"
 #include "tests/server/service_fixture.h"
+#include "tests/testing/draco_encode.h"
+#include "tests/testing/shapes.h"
 
 namespace marrow::testing {
 namespace {
@@ -60,6 +62,23 @@ TEST_F(SegmentTest, EventsComeInTheOrderOfTheContract) {
   EXPECT_EQ(answer.completed().spectrum().solver_runs(), 1u);
   EXPECT_EQ(answer.completed().spectrum().eigen_pairs(), 20u);
   EXPECT_GT(answer.completed().timings().first_level_seconds(), 0);
+}
+
+TEST_F(SegmentTest, WarningsAboutTheMeshFollowItsReport) {
+  Start();
+  v1::SegmentRequest request =
+      Request(EncodeDraco(Apart(Icosphere(2), Icosphere(1))));
+  request.mutable_outputs()->set_omit_skeletons(true);
+  request.mutable_options()->set_levels(1);
+  const Answer answer = Segment(request);
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_EQ(Order(answer),
+            "accepted mesh_report warning level labels completed ");
+  for (const v1::SegmentEvent& event : answer.events) {
+    if (!event.has_warning()) continue;
+    EXPECT_EQ(event.warning().code(), "COMPONENTS_BRIDGED");
+    EXPECT_THAT(event.warning().message(), ::testing::HasSubstr("2 pieces"));
+  }
 }
 
 TEST_F(SegmentTest, EveryFaceHasALabelThatIsASegment) {

@@ -60,12 +60,25 @@ std::string Health(const std::shared_ptr<grpc::Channel>& channel,
   return bytes == "\x08\x01" ? "SERVING" : "NOT_SERVING";
 }
 
+std::pair<grpc::Status, std::string> Reflect(
+    const std::shared_ptr<grpc::Channel>& channel, const std::string& request) {
+  return RawCall(
+      channel, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
+      request);
+}
+
 // ServerReflectionRequest has list_services as field 7.
 std::pair<grpc::Status, std::string> ListServices(
     const std::shared_ptr<grpc::Channel>& channel) {
-  return RawCall(
-      channel, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
-      std::string("\x3a\x00", 2));
+  return Reflect(channel, std::string("\x3a\x00", 2));
+}
+
+// And file_containing_symbol as field 4.
+std::string FileOf(const std::shared_ptr<grpc::Channel>& channel,
+                   const std::string& symbol) {
+  std::string request = "\x22";
+  request += static_cast<char>(symbol.size());
+  return Reflect(channel, request + symbol).second;
 }
 
 class ServerTest : public ServiceTest {};
@@ -85,6 +98,11 @@ TEST_F(ServerTest, ReflectionListsTheServicesOfOneServerAlone) {
   const auto [status, services] = ListServices(channel_);
   EXPECT_TRUE(status.ok());
   EXPECT_THAT(services, ::testing::HasSubstr("marrow.v1.SegmentationService"));
+
+  EXPECT_THAT(FileOf(channel_, "marrow.v1.SegmentationService"),
+              ::testing::HasSubstr("segmentation_service.proto"));
+  EXPECT_THAT(FileOf(channel_, "grpc.health.v1.Health"),
+              ::testing::HasSubstr("health.proto"));
 
   options_.reflection = false;
   const auto silent = Server::Start(options_);
@@ -109,6 +127,20 @@ TEST_F(ServerTest, CapabilitiesGiveLimitsAndDefaults) {
   EXPECT_THAT(response.methods(), ::testing::ElementsAre(v1::METHOD_PAPER));
   ASSERT_GT(response.parameter_ranges_size(), 0);
   EXPECT_EQ(response.parameter_ranges_size(), 6);
+}
+
+TEST_F(ServerTest, NoMoreIsTakenInlineThanAMeshMayHave) {
+  options_.mesh_limits.max_bytes = 1000;
+  Start();
+  grpc::ClientContext context;
+  v1::GetCapabilitiesResponse response;
+  ASSERT_TRUE(v1::CapabilitiesService::NewStub(channel_)
+                  ->GetCapabilities(&context, {}, &response)
+                  .ok());
+  EXPECT_EQ(response.mesh_limits().max_inline_mesh_bytes(), 1000u);
+  const Answer answer = Segment(Request(std::string(1001, 'x')));
+  EXPECT_THAT(answer.status.error_message(),
+              ::testing::HasSubstr("must be 1 to 1000"));
 }
 
 TEST_F(ServerTest, WithoutASocketTheInProcessChannelServes) {

@@ -341,6 +341,26 @@ TEST_F(MarrowSegmentTest, ASingleTriangleIsOneSegment) {
   EXPECT_EQ(ReadFile(Out("one.seg")), "0\n");
 }
 
+TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
+  WriteFile(folder_ / "two.off",
+            "OFF\n8 5 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n9 0 0\n9 1 0\n9 0 1\n"
+            "5 5 5\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 5 6\n");
+  const Finished run = Segment({folder_ / "two.off"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is in 2 pieces"));
+  std::vector<std::string> codes;
+  for (const json& warning :
+       json::parse(ReadFile(Out("two.json")))["report"]["warnings"]) {
+    codes.push_back(warning["code"]);
+    EXPECT_FALSE(warning["message"].get<std::string>().empty());
+  }
+  EXPECT_THAT(codes, ElementsAre("COMPONENTS_BRIDGED", "UNUSED_POINTS"));
+
+  const Finished events = Segment({folder_ / "two.off", "--json", "--quiet"});
+  EXPECT_THAT(events.out, HasSubstr("\"event\":\"warning\""));
+  EXPECT_THAT(events.err, IsEmpty());
+}
+
 TEST_F(MarrowSegmentTest, ATimeoutEndsTheCallAndLeavesNothing) {
   const Finished run = Segment({Sample(), "--timeout", "0.001"});
   EXPECT_EQ(run.code, 1);

@@ -137,6 +137,7 @@ TEST_F(MarrowServerTest, AServerThatIsLostEndsTheRunWithItsOwnExitCode) {
   daemon->Signal(SIGKILL);
   EXPECT_EQ(client.Wait(), 3);
   EXPECT_THAT(client.Out(), HasSubstr("\"skipped\":1"));
+  EXPECT_THAT(client.Out(), HasSubstr("the server was lost"));
   EXPECT_FALSE(std::filesystem::exists(File("lost")));
 }
 

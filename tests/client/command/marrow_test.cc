@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -65,9 +66,26 @@ TEST(MarrowTest, ACommandLineThatMakesNoSenseIsAUsageError) {
                                              {"inspect"}}) {
     const Finished run = Marrow(arguments);
     EXPECT_EQ(run.code, 2);
-    EXPECT_FALSE(run.err.empty());
+    EXPECT_THAT(run.err, ::testing::MatchesRegex("marrow: [^\n]+--help\n"));
     EXPECT_THAT(run.out, IsEmpty());
   }
+}
+
+TEST(MarrowTest, ValuesThatAreNoneAreNamed) {
+  const std::vector<std::array<const char*, 3>> cases = {
+      {"--kappa", "", "--kappa: '' is no number"},
+      {"--kappa", "abc", "--kappa: 'abc' is no number"},
+      {"--pairs", "2.5", "--pairs: '2.5' is no whole number"},
+      {"--levels", "-1", "--levels: '-1' is no whole number"},
+      {"--timeout", "nan", "--timeout: 'nan' is no number of seconds"},
+      {"--timeout", "0", "--timeout: '0' is no number of seconds"},
+      {"--quantize", "31", "--quantize"}};
+  for (const auto& [option, value, complaint] : cases) {
+    const Finished run = Marrow({"segment", "x.off", option, value});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr(complaint));
+  }
+  EXPECT_THAT(Marrow({"frobnicate"}).err, HasSubstr("'frobnicate'"));
 }
 
 TEST(MarrowTest, InspectReportsOnAMesh) {
@@ -193,7 +211,9 @@ TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
   EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("127.0.0.1:1"));
   EXPECT_THAT(run.err, HasSubstr("marrowd"));
-  EXPECT_EQ(Marrow({"health", "--server", "127.0.0.1:1"}).code, 3);
+  const Finished health = Marrow({"health", "--server", "127.0.0.1:1"});
+  EXPECT_EQ(health.code, 3);
+  EXPECT_THAT(health.err, HasSubstr("127.0.0.1:1: nothing answers"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
@@ -205,11 +225,28 @@ TEST(MarrowTest, AFullDiskIsNoSuccess) {
 }
 
 TEST(MarrowTest, AReaderThatWentAwayIsNoFailure) {
-  const Finished run =
-      RunProgram({"/bin/sh", "-c",
-                  "{ sleep 0.2; " + ProgramPath("marrow") +
-                      " sample --list; echo $? >&2; } | true"});
-  EXPECT_EQ(run.err, "0\n");
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  // The first prints at its end, the second line by line.
+  for (const std::string& arguments :
+       {std::string(" sample --list"),
+        " inspect --json " + (folder / "t.off")}) {
+    const Finished run =
+        RunProgram({"/bin/sh", "-c",
+                    "{ sleep 0.2; " + ProgramPath("marrow") + arguments +
+                        "; echo $? >&2; } | true"});
+    EXPECT_EQ(run.err, "0\n") << arguments;
+  }
+}
+
+TEST(MarrowTest, AClosedOutputIsTold) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const Finished run = RunProgram(
+      {"/bin/sh", "-c",
+       ProgramPath("marrow") + " inspect " + (folder / "t.off") + " >&-"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("standard output: it is closed"));
 }
 
 }  // namespace

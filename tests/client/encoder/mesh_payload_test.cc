@@ -55,6 +55,15 @@ TEST(LoadMeshPayloadTest, EncodesOtherFiles) {
   EXPECT_EQ(payload->encoded.bytes, EncodeMesh(Polygons(), {})->bytes);
 }
 
+TEST(LoadMeshPayloadTest, RefusesAMeshThatIsOnePoint) {
+  const std::string path =
+      WriteTemp("point.obj", "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n");
+  const absl::Status status =
+      LoadMeshPayload(path, EncodeOptions(), MeshLimits()).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("one position"));
+}
+
 TEST(LoadMeshPayloadTest, ErrorsBeginWithThePathAndKeepTheirReason) {
   const std::string broken = WriteTemp("broken.drc", "DRACO\x02\x02");
   const absl::Status status =
