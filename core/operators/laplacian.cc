@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -27,7 +29,10 @@ using WeightedEdge = IntrinsicTriangulation::Edge;
 // nothing, and flips make them go away; what is flat or short after that would
 // make L stiff, and bears more.
 constexpr double kFlatSlack = 1e-11;
-constexpr double kShortSlack = 1e-6;
+constexpr double kShortSlack = 1e-5;
+// Of the mean mass. A vertex among others that all but coincide with it has
+// next to none, and what rounds in L would be large against it.
+constexpr double kLeastMass = 1e-5;
 // A cotangent sum below zero by less than this part of its terms is a right
 // angle, rounded.
 constexpr double kRounding = 1e-13;
@@ -192,6 +197,19 @@ void FillDiagonal(Eigen::SparseMatrix<double>& L) {
   }
 }
 
+Eigen::VectorXd Masses(std::vector<Real> areas) {
+  auto sum = [&] {
+    return std::accumulate(areas.begin(), areas.end(), Real(0));
+  };
+  const Real least = kLeastMass * sum() / areas.size();
+  for (Real& area : areas) area = std::max(area, least);
+  const Real total = sum();
+  Eigen::VectorXd M(static_cast<Eigen::Index>(areas.size()));
+  for (size_t v = 0; v < areas.size(); ++v)
+    M[static_cast<Eigen::Index>(v)] = static_cast<double>(areas[v] / total);
+  return M;
+}
+
 Laplacian Assemble(const Stencil& stencil) {
   const uint32_t n = static_cast<uint32_t>(stencil.areas.size());
   std::vector<Eigen::Triplet<double>> triplets;
@@ -206,11 +224,7 @@ Laplacian Assemble(const Stencil& stencil) {
   result.L.resize(n, n);
   result.L.setFromTriplets(triplets.begin(), triplets.end());
   FillDiagonal(result.L);
-  Real area = 0;
-  for (Real a : stencil.areas) area += a;
-  result.M.resize(n);
-  for (uint32_t v = 0; v < n; ++v)
-    result.M[v] = static_cast<double>(stencil.areas[v] / area);
+  result.M = Masses(stencil.areas);
   return result;
 }
 

@@ -42,7 +42,7 @@ struct LaplacianReport {
 //    L_ij = -(cot a_ij + cot b_ij) / 2 (Pinkall and Polthier 1993), summed over
 //    the edges from i to j of an intrinsic Delaunay triangulation.
 // M: the diagonal of the lumped mass matrix, a third of the area around each
-//    vertex; positive; sums to 1.
+//    vertex, but at least 1e-5 of the mean; sums to 1.
 struct Laplacian {
   Eigen::SparseMatrix<double> L;
   Eigen::VectorXd M;

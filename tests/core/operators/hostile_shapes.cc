@@ -73,11 +73,10 @@ TriangleMesh AllSlivers(const TriangleMesh& mesh, double angle) {
 
 TriangleMesh RandomObtuse(uint32_t points, bool closed, uint32_t seed) {
   std::mt19937 random(seed);
-  TriangleMesh mesh =
-      MeshOf({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
-             closed ? std::vector<Triangle>{{0, 1, 2}, {0, 2, 3},
-                                            {2, 1, 0}, {3, 2, 0}}
-                    : std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+  TriangleMesh mesh = MeshOf(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+      closed ? std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {3, 2, 1}}
+             : std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
   Points all = PointsOf(mesh);
   while (all.size() < points) {
     const uint32_t f = static_cast<uint32_t>(random() % mesh.faces.size());
@@ -101,8 +100,7 @@ TriangleMesh Moebius(uint32_t columns) {
       points.push_back(out * OnCircle(turn) +
                        Eigen::Vector3d(0, 0, 0.3 * j * std::sin(pi * turn)));
     }
-  return MeshOf(points,
-                Band(columns, 2, 3, [](uint32_t j) { return 2 - j; }));
+  return MeshOf(points, Band(columns, 2, 3, [](uint32_t j) { return 2 - j; }));
 }
 
 TriangleMesh KleinBottle(uint32_t around, uint32_t across) {
@@ -110,16 +108,15 @@ TriangleMesh KleinBottle(uint32_t around, uint32_t across) {
   for (uint32_t i = 0; i < around; ++i)
     for (uint32_t j = 0; j < across; ++j) {
       const double turn = static_cast<double>(i) / around;
-      const double u = pi * turn, v = 2 * pi * (j + 0.25) / across;
+      const double u = pi * turn, v = 2 * pi * (j + 0.5) / across;
       const double x = std::sin(v), y = std::sin(2 * v);
       points.push_back(
           (2.5 + std::cos(u) * x - std::sin(u) * y) * OnCircle(turn) +
           Eigen::Vector3d(0, 0, std::sin(u) * x + std::cos(u) * y));
     }
-  // After half a turn of the figure 8 angle v is at -v.
-  return MeshOf(points, Band(around, across, across, [&](uint32_t j) {
-                  return (across + across / 2 - j % across) % across;
-                }));
+  // Half a turn of the figure 8 takes angle v to -v.
+  return MeshOf(points, Band(around, across, across,
+                             [&](uint32_t j) { return 2 * across - 1 - j; }));
 }
 
 TriangleMesh Pages(uint32_t pages) {
@@ -206,9 +203,9 @@ TriangleMesh TwistedCan(uint32_t around, double turns) {
     points.push_back(OnCircle(turns + static_cast<double>(i) / around) +
                      Eigen::Vector3d(0, 0, 3));
     const uint32_t a = 2 + 2 * i, b = 2 + 2 * ((i + 1) % around);
-    for (const Triangle& face : {Triangle{0, b, a}, Triangle{1, a + 1, b + 1},
-                                 Triangle{a, b, b + 1},
-                                 Triangle{a, b + 1, a + 1}})
+    for (const Triangle& face :
+         {Triangle{0, b, a}, Triangle{1, a + 1, b + 1}, Triangle{a, b, b + 1},
+          Triangle{a, b + 1, a + 1}})
       faces.push_back(face);
   }
   return MeshOf(points, std::move(faces));
@@ -217,8 +214,7 @@ TriangleMesh TwistedCan(uint32_t around, double turns) {
 std::vector<NamedMesh> HostileShapes() {
   return {
       {"sliver_sphere", AllSlivers(Icosphere(2), 1e-6)},
-      {"sliver_sphere_twice",
-       AllSlivers(AllSlivers(Icosphere(1), 1e-3), 1e-6)},
+      {"sliver_sphere_twice", AllSlivers(AllSlivers(Icosphere(1), 1e-3), 1e-6)},
       {"thinnest_slivers", AllSlivers(Icosphere(2), 1e-12)},
       {"sliver_disk", AllSlivers(Disk(6), 1e-6)},
       {"obtuse_square", RandomObtuse(400, false, 1)},

@@ -112,10 +112,10 @@ TEST(LaplacianTest, MollifiesOnlyWhereItMust) {
   EXPECT_EQ(Build(Icosphere(3)).report.mollification, 0);
   const Laplacian needles = Build(WithSlivers(Icosphere(3), 4, 1e-12));
   EXPECT_GT(needles.report.mollification, 0);
-  EXPECT_LT(needles.report.mollification, 1e-5);
+  EXPECT_LT(needles.report.mollification, 2e-5);
   const Laplacian flat = Build(WithSlivers(Grid(4, 4), 3, 0));
   EXPECT_GT(flat.report.mollification, 0);
-  EXPECT_LT(flat.report.mollification, 1e-5);
+  EXPECT_LT(flat.report.mollification, 2e-5);
 }
 
 TEST(LaplacianTest, AreaSharesAreExactForNeedles) {
