@@ -184,17 +184,68 @@ absl::StatusOr<Stencil> FlippedStencil(const TriangleMesh& mesh,
   return stencil;
 }
 
-// The diagonal is what the rest of its column sums to, rounded once.
-void FillDiagonal(Eigen::SparseMatrix<double>& L) {
-  for (Eigen::Index j = 0; j < L.cols(); ++j) {
-    long double sum = 0;
-    double* diagonal = nullptr;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(L, j); it; ++it) {
-      sum -= it.value();
-      if (it.row() == j) diagonal = &it.valueRef();
-    }
-    *diagonal = static_cast<double>(sum);
+uint64_t SortKey(const WeightedEdge& edge) {
+  return uint64_t{edge.ends[0]} << 32 | edge.ends[1];
+}
+
+// Leaves one entry for each pair of vertices, the lesser first, in ascending
+// order.
+void Merge(std::vector<WeightedEdge>& edges) {
+  bool is_merged = true;
+  uint64_t last = 0;
+  for (WeightedEdge& edge : edges) {
+    if (edge.ends[0] > edge.ends[1]) std::swap(edge.ends[0], edge.ends[1]);
+    is_merged &= last < SortKey(edge);
+    last = SortKey(edge);
   }
+  if (is_merged) return;
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const WeightedEdge& a, const WeightedEdge& b) {
+                     return SortKey(a) < SortKey(b);
+                   });
+  size_t kept = 0;
+  for (size_t e = 1; e < edges.size(); ++e) {
+    if (SortKey(edges[kept]) == SortKey(edges[e])) {
+      edges[kept].weight += edges[e].weight;
+    } else {
+      edges[++kept] = edges[e];
+    }
+  }
+  edges.resize(kept + 1);
+}
+
+// In the order of merged edges the entries of a column come from the top down,
+// with those above the diagonal before any below it.
+Eigen::SparseMatrix<double> Matrix(const std::vector<WeightedEdge>& edges,
+                                   uint32_t n) {
+  std::vector<Real> sums(n, 0);
+  std::vector<int> counts(n, 1), above(n, 0);
+  for (const auto& [ends, weight] : edges) {
+    for (uint32_t v : ends) {
+      sums[v] += weight;
+      ++counts[v];
+    }
+    ++above[ends[1]];
+  }
+  Eigen::SparseMatrix<double> L(n, n);
+  L.resizeNonZeros(n + 2 * static_cast<Eigen::Index>(edges.size()));
+  int* starts = L.outerIndexPtr();
+  std::partial_sum(counts.begin(), counts.end(), starts + 1);
+  std::vector<int> next(starts, starts + n);
+  auto put = [&](uint32_t column, uint32_t row, double value) {
+    L.innerIndexPtr()[next[column]] = static_cast<int>(row);
+    L.valuePtr()[next[column]++] = value;
+  };
+  auto put_diagonal = [&](uint32_t v) {
+    if (above[v]-- == 0) put(v, v, static_cast<double>(sums[v]));
+  };
+  for (uint32_t v = 0; v < n; ++v) put_diagonal(v);
+  for (const auto& [ends, weight] : edges) {
+    put(ends[0], ends[1], -weight);
+    put(ends[1], ends[0], -weight);
+    put_diagonal(ends[1]);
+  }
+  return L;
 }
 
 Eigen::VectorXd Masses(std::vector<Real> areas) {
@@ -210,24 +261,6 @@ Eigen::VectorXd Masses(std::vector<Real> areas) {
   return M;
 }
 
-Laplacian Assemble(const Stencil& stencil) {
-  const uint32_t n = static_cast<uint32_t>(stencil.areas.size());
-  std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(n + 2 * stencil.edges.size());
-  for (const auto& [ends, weight] : stencil.edges) {
-    triplets.emplace_back(ends[0], ends[1], -weight);
-    triplets.emplace_back(ends[1], ends[0], -weight);
-  }
-  for (uint32_t v = 0; v < n; ++v) triplets.emplace_back(v, v, 0.0);
-  Laplacian result;
-  result.report = stencil.report;
-  result.L.resize(n, n);
-  result.L.setFromTriplets(triplets.begin(), triplets.end());
-  FillDiagonal(result.L);
-  result.M = Masses(stencil.areas);
-  return result;
-}
-
 absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
                                 const CancelToken& cancel) {
   const Adjacency adjacency(mesh);
@@ -240,7 +273,9 @@ absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
   // A bridge conducts as two equilateral triangles across one edge do, about 1.
   for (const auto& ends : FindBridges(mesh))
     stencil->edges.push_back({ends, 1.0});
-  Laplacian laplacian = Assemble(*stencil);
+  Merge(stencil->edges);
+  Laplacian laplacian{Matrix(stencil->edges, mesh.NumVertices()),
+                      Masses(std::move(stencil->areas)), stencil->report};
   MARROW_RETURN_IF_ERROR(CheckLaplacian(laplacian));
   return laplacian;
 }
