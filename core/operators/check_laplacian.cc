@@ -41,7 +41,8 @@ absl::Status CheckRows(const Sparse& L, double scale) {
   for (Eigen::Index j = 0; j < L.cols(); ++j) {
     long double sum = 0;
     for (Sparse::InnerIterator it(L, j); it; ++it) {
-      if (!std::isfinite(it.value())) return Broken("an entry that is not finite", j);
+      if (!std::isfinite(it.value()))
+        return Broken("an entry that is not finite", j);
       if (it.row() != j && it.value() > kMaxPositive * scale)
         return Broken("a negative weight", j);
       sum += it.value();

@@ -164,11 +164,10 @@ IntrinsicTriangulation::WeightedEdges() const {
   return edges;
 }
 
-std::vector<IntrinsicTriangulation::Real> IntrinsicTriangulation::VertexAreas(
-    uint32_t n) const {
-  std::vector<Real> areas(n, 0);
+Eigen::VectorXd IntrinsicTriangulation::VertexAreas(uint32_t n) const {
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(n);
   for (uint32_t side = 0; side < corners_.size(); side += 3) {
-    const Real third = OppositeCorner(side).area / 3;
+    const double third = static_cast<double>(OppositeCorner(side).area / 3);
     for (uint32_t i = 0; i < 3; ++i) areas[corners_[side + i]] += third;
   }
   return areas;

@@ -10,6 +10,7 @@
 #ifndef MARROW_CORE_OPERATORS_INTRINSIC_TRIANGULATION_H_
 #define MARROW_CORE_OPERATORS_INTRINSIC_TRIANGULATION_H_
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -53,7 +54,7 @@ class IntrinsicTriangulation {
   // FlipToDelaunay().
   std::vector<Edge> WeightedEdges() const;
   // A third of the area around each of n vertices.
-  std::vector<Real> VertexAreas(uint32_t n) const;
+  Eigen::VectorXd VertexAreas(uint32_t n) const;
 
  private:
   // What the edge and its opposite angle look like from one of its sides.

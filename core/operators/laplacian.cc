@@ -40,7 +40,7 @@ constexpr double kRounding = 1e-13;
 // The edges with their weights, not yet a matrix; areas in any unit.
 struct Stencil {
   std::vector<WeightedEdge> edges;
-  std::vector<Real> areas;  // by vertex
+  Eigen::VectorXd areas;  // by vertex
   LaplacianReport report;
 };
 
@@ -114,7 +114,7 @@ std::optional<Stencil> PlainStencil(const TriangleMesh& mesh,
   const double slack = kShortSlack * MeanLength(adjacency, lengths);
   std::vector<EdgeCotangents> cotangents(adjacency.NumEdges());
   Stencil stencil;
-  stencil.areas.resize(mesh.NumVertices(), 0);
+  stencil.areas = Eigen::VectorXd::Zero(mesh.NumVertices());
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
     const auto& edges = adjacency.FaceEdges(f);
     const double a = lengths[edges[0]], b = lengths[edges[1]],
@@ -248,17 +248,9 @@ Eigen::SparseMatrix<double> Matrix(const std::vector<WeightedEdge>& edges,
   return L;
 }
 
-Eigen::VectorXd Masses(std::vector<Real> areas) {
-  auto sum = [&] {
-    return std::accumulate(areas.begin(), areas.end(), Real(0));
-  };
-  const Real least = kLeastMass * sum() / areas.size();
-  for (Real& area : areas) area = std::max(area, least);
-  const Real total = sum();
-  Eigen::VectorXd M(static_cast<Eigen::Index>(areas.size()));
-  for (size_t v = 0; v < areas.size(); ++v)
-    M[static_cast<Eigen::Index>(v)] = static_cast<double>(areas[v] / total);
-  return M;
+Eigen::VectorXd Masses(const Eigen::VectorXd& areas) {
+  const Eigen::VectorXd lifted = areas.cwiseMax(kLeastMass * areas.mean());
+  return lifted / lifted.sum();
 }
 
 absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
@@ -275,7 +267,7 @@ absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
     stencil->edges.push_back({ends, 1.0});
   Merge(stencil->edges);
   Laplacian laplacian{Matrix(stencil->edges, mesh.NumVertices()),
-                      Masses(std::move(stencil->areas)), stencil->report};
+                      Masses(stencil->areas), stencil->report};
   MARROW_RETURN_IF_ERROR(CheckLaplacian(laplacian));
   return laplacian;
 }

@@ -1,7 +1,6 @@
 #include "core/operators/intrinsic_triangulation.h"
 
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "gtest/gtest.h"
@@ -28,9 +27,7 @@ IntrinsicTriangulation CoverOf(const TriangleMesh& mesh) {
 }
 
 double AreaOf(const IntrinsicTriangulation& triangulation, uint32_t vertices) {
-  const std::vector<Real> areas = triangulation.VertexAreas(vertices);
-  return static_cast<double>(
-      std::accumulate(areas.begin(), areas.end(), Real(0)));
+  return triangulation.VertexAreas(vertices).sum();
 }
 
 uint64_t Flip(IntrinsicTriangulation& triangulation) {
