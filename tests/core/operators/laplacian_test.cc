@@ -102,6 +102,36 @@ TEST(LaplacianTest, HasCotangentWeights) {
   EXPECT_NEAR(laplacian.M[1], 1.0 / 6, 1e-14);
 }
 
+// Cotangents from positions, a face at a time.
+Eigen::MatrixXd CotangentLaplacian(const TriangleMesh& mesh) {
+  Eigen::MatrixXd L =
+      Eigen::MatrixXd::Zero(mesh.NumVertices(), mesh.NumVertices());
+  for (const Triangle& face : mesh.faces) {
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t a = face[i], b = face[(i + 1) % 3], c = face[(i + 2) % 3];
+      const Eigen::Vector3d u = mesh.Position(a) - mesh.Position(c);
+      const Eigen::Vector3d v = mesh.Position(b) - mesh.Position(c);
+      const double weight = 0.5 * u.dot(v) / u.cross(v).norm();
+      L(a, b) -= weight;
+      L(b, a) -= weight;
+      L(a, a) += weight;
+      L(b, b) += weight;
+    }
+  }
+  return L;
+}
+
+TEST(LaplacianTest, IsTheCotangentLaplacianOfGoodMeshes) {
+  for (const TriangleMesh& mesh : {Icosphere(3), Disk(9), Grid(12, 7)}) {
+    const Laplacian laplacian = Build(mesh);
+    EXPECT_EQ(laplacian.report.path, LaplacianPath::kPlain);
+    EXPECT_EQ(laplacian.report.flips, 0u);
+    const Eigen::MatrixXd expected = CotangentLaplacian(mesh);
+    EXPECT_LE((Eigen::MatrixXd(laplacian.L) - expected).cwiseAbs().maxCoeff(),
+              1e-13 * expected.diagonal().maxCoeff());
+  }
+}
+
 TEST(LaplacianTest, FacesAtAnEdgeOfManyAllCount) {
   const Laplacian two = Build(Book(2, 1));
   const Laplacian six = Build(Book(6, 1));
