@@ -164,7 +164,8 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const uint32_t n = mesh.mesh.NumVertices();
   const uint32_t pairs = std::min(count + 1, n);
-  const Laplacian laplacian = BuildLaplacian(mesh.mesh);
+  MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
+                          BuildLaplacian(mesh.mesh, cancel));
   MARROW_RETURN_IF_ERROR(cancel.Check());
   RawPairs raw;
   if (n <= kDenseVertices || 2 * pairs >= n) {

@@ -141,7 +141,7 @@ TEST(DiffusionDistanceTest, IsThatOfTheHeatKernel) {
   const uint32_t n = canonical.mesh.NumVertices();
   const auto pairs = Solve(LimbCross(1), n);
   ASSERT_TRUE(pairs->complete);
-  const Laplacian laplacian = BuildLaplacian(canonical.mesh);
+  const Laplacian laplacian = *BuildLaplacian(canonical.mesh);
   const Eigen::MatrixXd inverse_mass = laplacian.M.cwiseInverse().asDiagonal();
   for (double t : {0.001, 0.02}) {
     const Eigen::MatrixXd generator =

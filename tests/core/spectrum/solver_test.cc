@@ -24,7 +24,7 @@ std::shared_ptr<const EigenPairs> Solve(const CanonicalMesh& mesh,
 }
 
 Eigen::VectorXd DenseReference(const CanonicalMesh& mesh) {
-  const Laplacian laplacian = BuildLaplacian(mesh.mesh);
+  const Laplacian laplacian = *BuildLaplacian(mesh.mesh);
   return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
              Eigen::MatrixXd(laplacian.L),
              Eigen::MatrixXd(laplacian.M.asDiagonal()), Eigen::EigenvaluesOnly)
@@ -33,7 +33,7 @@ Eigen::VectorXd DenseReference(const CanonicalMesh& mesh) {
 
 double WorstOrthonormality(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   const Eigen::MatrixXd products = pairs.eigenvectors.transpose() *
-                                   BuildLaplacian(mesh.mesh).M.asDiagonal() *
+                                   BuildLaplacian(mesh.mesh)->M.asDiagonal() *
                                    pairs.eigenvectors;
   return (products -
           Eigen::MatrixXd::Identity(products.rows(), products.cols()))
@@ -43,7 +43,7 @@ double WorstOrthonormality(const CanonicalMesh& mesh, const EigenPairs& pairs) {
 
 // In the M^-1 norm, in units of max(lambda, lambda_1).
 double WorstResidual(const CanonicalMesh& mesh, const EigenPairs& pairs) {
-  const Laplacian laplacian = BuildLaplacian(mesh.mesh);
+  const Laplacian laplacian = *BuildLaplacian(mesh.mesh);
   double worst = 0;
   for (uint32_t k = 0; k < pairs.NumPairs(); ++k) {
     const Eigen::VectorXd phi = pairs.eigenvectors.col(k);
