@@ -200,11 +200,6 @@ absl::StatusOr<DracoHeader> ParseFileHeader(Reader& reader,
   return header;
 }
 
-absl::Status CannotBelong(uint64_t vertices, uint64_t faces, size_t byte) {
-  return Malformed(byte, absl::StrCat(vertices, " vertices cannot belong to ",
-                                      faces, " faces"));
-}
-
 absl::Status CheckCounts(uint64_t faces, uint64_t vertices, size_t byte,
                          const MeshLimits& limits) {
   if (faces == 0) return Rejected("the mesh has no faces");
@@ -218,7 +213,12 @@ absl::Status CheckCounts(uint64_t faces, uint64_t vertices, size_t byte,
                                  " vertices, the limit is ",
                                  limits.max_vertices, "; simplify it"));
   }
-  if (vertices < 3) return CannotBelong(vertices, faces, byte);
+  if (vertices < 3 || vertices > 3 * faces) {
+    return Malformed(
+        byte, absl::StrCat(vertices, " vertices cannot belong to ", faces,
+                           " faces; leave out vertices that no "
+                           "face uses"));
+  }
   return absl::OkStatus();
 }
 
@@ -267,11 +267,6 @@ absl::Status ParseEdgebreaker(Reader& reader, const MeshLimits& limits,
   MARROW_ASSIGN_OR_RETURN(header.faces, reader.Varint("number of faces"));
   MARROW_RETURN_IF_ERROR(
       CheckCounts(header.faces, header.vertices, start, limits));
-  // A sequential file may hold points that no face uses; here every vertex is
-  // found through a face.
-  if (header.vertices > 3 * header.faces) {
-    return CannotBelong(header.vertices, header.faces, start);
-  }
   MARROW_ASSIGN_OR_RETURN(const uint64_t attribute_data,
                           reader.Fixed(1, "number of seam attributes"));
   if (attribute_data > kMaxAttributeData) {

@@ -214,8 +214,7 @@ TriangleMesh Fans(uint32_t around, const std::vector<double>& heights) {
 
 // --- Many pieces (70 to 73) ---
 
-TriangleMesh WithIsolatedVertices(uint32_t count) {
-  TriangleMesh mesh = LimbCross(2);
+TriangleMesh WithIsolatedVertices(TriangleMesh mesh, uint32_t count) {
   const uint32_t n = mesh.NumVertices();
   mesh.positions.conservativeResize(n + count, 3);
   for (uint32_t i = 0; i < count; ++i)
@@ -478,7 +477,14 @@ void AddManyPieces(bool full, Cases& cases) {
   const uint32_t bodies = full ? 100'000 : 1'000;
   cases.insert(
       cases.end(),
-      {{"c70_isolated_vertices", [] { return WithIsolatedVertices(100'000); }},
+      {{"c70_isolated_vertices",
+        [=] {
+          return full ? WithIsolatedVertices(Icosphere(6), 100'000)
+                      : WithIsolatedVertices(LimbCross(2), 2'500);
+        }},
+       // More than three a face: Draco's sequential files cannot hold them.
+       {"c70_too_many_isolated_vertices",
+        [] { return WithIsolatedVertices(LimbCross(2), 100'000); }},
        {"c71_tetrahedra", [=] { return Copies(Tetrahedron(), bodies); }},
        {"c72_triangles",
         [=] { return Copies(SingleTriangle(), full ? 1'000'000 : 3'000); }},

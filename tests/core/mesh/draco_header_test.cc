@@ -84,14 +84,6 @@ TEST(DracoHeaderTest, OlderMinorVersionsHaveOtherCounts) {
   EXPECT_EQ(edgebreaker->vertices, 4u);
 }
 
-TEST(DracoHeaderTest, PointsWithoutAFaceAreAllowedWhereTheyCanBe) {
-  const auto header =
-      ParseDracoHeader(FileHeader(2, 0) + Bytes({2, 90, 1}), {});
-  ASSERT_TRUE(header.ok()) << header.status();
-  EXPECT_EQ(header->vertices, 90u);
-  ExpectMalformed(FileHeader(2, 0) + Bytes({2, 2, 1}), "2 vertices cannot");
-}
-
 TEST(DracoHeaderTest, NamesWhatIsNotAMesh) {
   ExpectMalformed("", "empty");
   ExpectMalformed("v 0 0 0\nv 1 0 0\n", "byte 0: the file does not begin");
