@@ -273,7 +273,8 @@ absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
   if (records.empty()) {
     return Rejected(absl::StrCat(
         "all ", decoded.faces.size(),
-        " faces are degenerate: each has two corners at one position"));
+        " faces are degenerate: each has two corners at one position; if they "
+        "were rounded away, move the mesh nearer to the origin"));
   }
   CanonicalMesh result;
   const uint64_t degenerate_faces = decoded.faces.size() - records.size();

@@ -214,8 +214,10 @@ absl::Status CheckCounts(uint64_t faces, uint64_t vertices, size_t byte,
                                  limits.max_vertices, "; simplify it"));
   }
   if (vertices < 3 || vertices > 3 * faces) {
-    return Malformed(byte, absl::StrCat(vertices, " vertices cannot belong to ",
-                                        faces, " faces"));
+    return Malformed(
+        byte, absl::StrCat(vertices, " vertices cannot belong to ", faces,
+                           " faces; leave out vertices that no "
+                           "face uses"));
   }
   return absl::OkStatus();
 }

@@ -6,8 +6,25 @@
 #include <stdexcept>
 
 namespace marrow {
+namespace {
 
-std::string EncodeDraco(const TriangleMesh& mesh) {
+template <typename Scalar>
+void AddPositions(const TriangleMesh& mesh, draco::DataType type,
+                  draco::Mesh& encoded) {
+  draco::GeometryAttribute description;
+  description.Init(draco::GeometryAttribute::POSITION, nullptr, 3, type, false,
+                   3 * sizeof(Scalar), 0);
+  draco::PointAttribute* positions = encoded.attribute(
+      encoded.AddAttribute(description, true, mesh.NumVertices()));
+  for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
+    const Eigen::Vector3<Scalar> p = mesh.Position(v).cast<Scalar>();
+    positions->SetAttributeValue(draco::AttributeValueIndex(v), p.data());
+  }
+}
+
+}  // namespace
+
+std::string EncodeDraco(const TriangleMesh& mesh, Precision precision) {
   draco::Mesh encoded;
   encoded.set_num_points(mesh.NumVertices());
   encoded.SetNumFaces(mesh.NumFaces());
@@ -16,14 +33,10 @@ std::string EncodeDraco(const TriangleMesh& mesh) {
     for (int i = 0; i < 3; ++i) face[i] = draco::PointIndex(mesh.faces[f][i]);
     encoded.SetFace(draco::FaceIndex(f), face);
   }
-  draco::GeometryAttribute description;
-  description.Init(draco::GeometryAttribute::POSITION, nullptr, 3,
-                   draco::DT_FLOAT32, false, 3 * sizeof(float), 0);
-  draco::PointAttribute* positions = encoded.attribute(
-      encoded.AddAttribute(description, true, mesh.NumVertices()));
-  for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
-    const Eigen::Vector3f p = mesh.Position(v).cast<float>();
-    positions->SetAttributeValue(draco::AttributeValueIndex(v), p.data());
+  if (precision == Precision::kDouble) {
+    AddPositions<double>(mesh, draco::DT_FLOAT64, encoded);
+  } else {
+    AddPositions<float>(mesh, draco::DT_FLOAT32, encoded);
   }
   draco::Encoder encoder;
   encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);

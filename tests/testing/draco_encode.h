@@ -8,9 +8,12 @@
 
 namespace marrow {
 
+enum class Precision { kFloat, kDouble };
+
 // Sequential, without quantization: decodes to the same points and faces in
-// the same order. Positions are rounded to float.
-std::string EncodeDraco(const TriangleMesh& mesh);
+// the same order. Positions are rounded to float, or sent as doubles.
+std::string EncodeDraco(const TriangleMesh& mesh,
+                        Precision precision = Precision::kFloat);
 
 }  // namespace marrow
 

@@ -50,43 +50,6 @@ class LatticeNumbers {
   Points points_;
 };
 
-// The boundary of a set of unit cubes, each side cut into squares.
-TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
-                          int fineness) {
-  LatticeNumbers numbers;
-  std::vector<Triangle> faces;
-  for (const auto& cube : cubes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int side : {0, 1}) {
-        auto beyond = cube;
-        beyond[axis] += side ? 1 : -1;
-        if (cubes.count(beyond)) continue;
-        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
-        auto corner = [&](int i, int j) {
-          std::array<int, 3> at;
-          at[axis] = (cube[axis] + side) * fineness;
-          at[u] = cube[u] * fineness + i;
-          at[w] = cube[w] * fineness + j;
-          return numbers.Of(at);
-        };
-        for (int i = 0; i < fineness; ++i) {
-          for (int j = 0; j < fineness; ++j) {
-            std::array<uint32_t, 4> square = {corner(i, j), corner(i + 1, j),
-                                              corner(i + 1, j + 1),
-                                              corner(i, j + 1)};
-            if (side == 0) std::reverse(square.begin(), square.end());
-            faces.push_back({square[0], square[1], square[2]});
-            faces.push_back({square[0], square[2], square[3]});
-          }
-        }
-      }
-    }
-  }
-  TriangleMesh mesh = MeshOf(numbers.points(), std::move(faces));
-  mesh.positions /= fineness;
-  return mesh;
-}
-
 // Moves every vertex half way to the mean of its neighbours, a few times.
 void Round(TriangleMesh& mesh, int times) {
   for (int i = 0; i < times; ++i) {
@@ -256,6 +219,42 @@ TriangleMesh Dumbbell(double left, uint32_t around) {
     profile.push_back({length * (-0.5 + static_cast<double>(i) / steps), neck});
   arc(length / 2 + right_edge, 1, std::asin(neck), pi);
   return Revolve(profile, around);
+}
+
+TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
+                          int fineness) {
+  LatticeNumbers numbers;
+  std::vector<Triangle> faces;
+  for (const auto& cube : cubes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side : {0, 1}) {
+        auto beyond = cube;
+        beyond[axis] += side ? 1 : -1;
+        if (cubes.count(beyond)) continue;
+        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+        auto corner = [&](int i, int j) {
+          std::array<int, 3> at;
+          at[axis] = (cube[axis] + side) * fineness;
+          at[u] = cube[u] * fineness + i;
+          at[w] = cube[w] * fineness + j;
+          return numbers.Of(at);
+        };
+        for (int i = 0; i < fineness; ++i) {
+          for (int j = 0; j < fineness; ++j) {
+            std::array<uint32_t, 4> square = {corner(i, j), corner(i + 1, j),
+                                              corner(i + 1, j + 1),
+                                              corner(i, j + 1)};
+            if (side == 0) std::reverse(square.begin(), square.end());
+            faces.push_back({square[0], square[1], square[2]});
+            faces.push_back({square[0], square[2], square[3]});
+          }
+        }
+      }
+    }
+  }
+  TriangleMesh mesh = MeshOf(numbers.points(), std::move(faces));
+  mesh.positions /= fineness;
+  return mesh;
 }
 
 TriangleMesh LimbCross(uint32_t fineness) {

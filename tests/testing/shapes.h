@@ -4,7 +4,9 @@
 #define MARROW_TESTS_TESTING_SHAPES_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,9 @@ TriangleMesh Grid(uint32_t columns, uint32_t rows);
 // Two balls of radius 1 (right) and `left` about x, joined by a thin neck; of
 // genus 0. `around` is the number of vertices of a ring.
 TriangleMesh Dumbbell(double left, uint32_t around);
+// The boundary of a set of unit cubes, each side cut into fineness^2 squares.
+TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
+                          int fineness);
 // A ball-like body with four limbs of different lengths: a creature of
 // `fineness`^2 squares a unit of its surface, slightly rounded.
 TriangleMesh LimbCross(uint32_t fineness);
