@@ -348,9 +348,9 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
   const Finished run = Segment({folder_ / "two.off"});
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is in 2 pieces"));
+  const json result = json::parse(ReadFile(Out("two.json")));
   std::vector<std::string> codes;
-  for (const json& warning :
-       json::parse(ReadFile(Out("two.json")))["report"]["warnings"]) {
+  for (const json& warning : result["report"]["warnings"]) {
     codes.push_back(warning["code"]);
     EXPECT_FALSE(warning["message"].get<std::string>().empty());
   }
