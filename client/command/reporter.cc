@@ -129,8 +129,11 @@ void Reporter::ShowProgress(size_t file) {
                                 ? ""
                                 : absl::StrCat(succeeded_ + failed_, " of ",
                                                files_.size(), " done, ");
+  // Without its folders the name leaves room for the stage.
+  const std::string& path = files_[file].name;
   bar_.Show(sum / static_cast<double>(files_.size()),
-            absl::StrCat(count, files_[file].name, ": ", files_[file].stage));
+            absl::StrCat(count, path.substr(path.rfind('/') + 1), ": ",
+                         files_[file].stage));
 }
 
 void Reporter::Finish(absl::Duration elapsed) {

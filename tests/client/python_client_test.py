@@ -8,6 +8,7 @@ Usage: python_client_test.py PROTO_FOLDER BIN_FOLDER
 
 import glob
 import hashlib
+import json
 import os
 import struct
 import subprocess
@@ -18,7 +19,7 @@ import unittest
 import grpc
 
 PROTO_FOLDER, BIN_FOLDER = sys.argv[1:3]
-CHUNK = 256 * 1024
+CHUNK = 8 * 1024  # several to a mesh of some thousand faces
 
 
 def program(name):
@@ -52,6 +53,35 @@ def labels_of(events, domain):
     for level, known in labels.items():
         assert len(known) == totals[level]
     return labels
+
+
+def details_of(error):
+    """Message name -> detail of a failed call."""
+    from marrow.v1 import error_details_pb2 as pb
+    trailer = dict(error.trailing_metadata())["grpc-status-details-bin"]
+    result = {}
+    for packed in pb.RpcStatus.FromString(trailer).details:
+        prefix, name = packed.type_url.rsplit(".", 1)
+        assert prefix == "type.googleapis.com/google.rpc", packed.type_url
+        result[name] = getattr(pb, name).FromString(packed.value)
+    return result
+
+
+def tree_of(events):
+    """Node id -> what the events say of it, their lists joined."""
+    nodes = {}
+    for event in events:
+        for node in event.level.nodes:
+            known = nodes.setdefault(node.id, {"medial": b""})
+            if "level" not in known:
+                known["level"] = node.level
+                known["parent"] = (
+                    node.parent if node.HasField("parent") else None)
+            known["medial"] += node.medial_structure
+        for split in [*event.level.splits, *event.completed.splits]:
+            nodes[split.id]["children"] = list(split.children)
+            nodes[split.id]["iterations"] = split.iterations
+    return nodes
 
 
 class PythonClientTest(unittest.TestCase):
@@ -95,13 +125,17 @@ class PythonClientTest(unittest.TestCase):
         return mesh_pb2.MeshDigest(sha256=hashlib.sha256(self.draco).digest(),
                                    size_bytes=len(self.draco))
 
-    def marrow_labels(self, level):
+    def marrow_result(self, name):
         out = os.path.join(self.folder.name, "out")
-        subprocess.run([program("marrow"), "segment", self.path, "-o", out],
-                       check=True, stdout=subprocess.DEVNULL)
-        with open(os.path.join(out, "me.level-%d.seg" % level),
-                  encoding="ascii") as file:
-            return [int(line) for line in file]
+        if not os.path.exists(out):
+            subprocess.run([program("marrow"), "segment", self.path, "-o",
+                            out], check=True, stdout=subprocess.DEVNULL)
+        with open(os.path.join(out, "me." + name), encoding="utf-8") as file:
+            return file.read()
+
+    def marrow_labels(self, level):
+        text = self.marrow_result("level-%d.seg" % level)
+        return [int(line) for line in text.splitlines()]
 
     def test_labels_are_those_of_marrow(self):
         events = self.segment(draco=self.draco)
@@ -114,6 +148,18 @@ class PythonClientTest(unittest.TestCase):
         self.assertGreaterEqual(len(labels), 2)
         for level, known in labels.items():
             self.assertEqual(known, self.marrow_labels(level))
+
+    def test_the_tree_is_that_of_marrow(self):
+        nodes = tree_of(self.segment(draco=self.draco))
+        expected = json.loads(self.marrow_result("json"))["tree"]["nodes"]
+        self.assertEqual(sorted(nodes), [node["id"] for node in expected])
+        for node in expected:
+            known = nodes[node["id"]]
+            for field in ("parent", "children", "level", "iterations"):
+                self.assertEqual(known[field], node[field], node["id"])
+            medial = struct.unpack("<%dI" % (len(known["medial"]) // 4),
+                                   known["medial"])
+            self.assertEqual(list(medial), node["medial_structure"])
 
     def test_a_mesh_is_uploaded_and_then_named(self):
         from marrow.v1 import mesh_store_service_pb2 as pb
@@ -130,6 +176,12 @@ class PythonClientTest(unittest.TestCase):
                 sha256=bytes(32), size_bytes=1))
         self.assertEqual(caught.exception.code(),
                          grpc.StatusCode.FAILED_PRECONDITION)
+        details = details_of(caught.exception)
+        self.assertEqual(details["ErrorInfo"].reason, "MESH_MISSING")
+        violation = details["PreconditionFailure"].violations[0]
+        self.assertEqual(violation.type, "MESH_MISSING")
+        self.assertEqual(violation.subject, "00" * 32)
+        self.assertGreater(len(self.draco), 2 * CHUNK)
         store = rpc.MeshStoreServiceStub(self.channel)
         store.UploadMesh(parts(), timeout=60)
         named = labels_of(self.segment(digest=self.digest()), 1)
@@ -137,7 +189,6 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(named, inline)
 
     def test_a_bad_parameter_names_its_field(self):
-        from marrow.v1 import error_details_pb2 as details
         from marrow.v1 import mesh_pb2
         from marrow.v1 import segmentation_service_pb2 as pb
         from marrow.v1 import segmentation_service_pb2_grpc as rpc
@@ -149,18 +200,11 @@ class PythonClientTest(unittest.TestCase):
             list(stub.Segment(request, timeout=60))
         error = caught.exception
         self.assertEqual(error.code(), grpc.StatusCode.INVALID_ARGUMENT)
-        trailer = dict(error.trailing_metadata())["grpc-status-details-bin"]
-        status = details.RpcStatus.FromString(trailer)
-        reasons = []
-        fields = []
-        for any_message in status.details:
-            if any_message.type_url.endswith("google.rpc.ErrorInfo"):
-                info = details.ErrorInfo.FromString(any_message.value)
-                reasons.append((info.domain, info.reason))
-            if any_message.type_url.endswith("google.rpc.BadRequest"):
-                bad = details.BadRequest.FromString(any_message.value)
-                fields += [v.field for v in bad.field_violations]
-        self.assertEqual(reasons, [("marrow", "INVALID_PARAMETER")])
+        details = details_of(error)
+        self.assertEqual(sorted(details), ["BadRequest", "ErrorInfo"])
+        self.assertEqual(details["ErrorInfo"].domain, "marrow")
+        self.assertEqual(details["ErrorInfo"].reason, "INVALID_PARAMETER")
+        fields = [v.field for v in details["BadRequest"].field_violations]
         self.assertEqual(fields, ["options.kappa"])
 
 
