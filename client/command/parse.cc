@@ -52,6 +52,7 @@ of these for STEM is replaced as a whole.
 With --json each event is a line {"event": ..., "file": ...} on standard
 output: accepted, progress, mesh_report, level, skeleton, warning, then
 completed (with the files that were written) or error; at last one summary.
+A large level or skeleton comes in several lines, whose numbers add up.
 Lines of several files may alternate. A failure is told on standard error too.
 
 Ctrl-C stops the work and leaves no file half written; a second one ends at
