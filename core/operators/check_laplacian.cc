@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,8 @@ absl::Status CheckRows(const Sparse& L, double scale) {
 absl::Status CheckMasses(const Eigen::VectorXd& M) {
   for (Eigen::Index v = 0; v < M.size(); ++v)
     if (!(M[v] > 0) || !std::isfinite(M[v])) return Broken("no mass", v);
-  if (!(std::abs(M.sum() - 1) <= kMaxRowSum))
+  const long double sum = std::accumulate(M.begin(), M.end(), 0.0L);
+  if (!(std::abs(sum - 1) <= kMaxRowSum))
     return absl::InternalError("the masses do not sum to 1");
   return absl::OkStatus();
 }

@@ -26,20 +26,22 @@ IntrinsicTriangulation::IntrinsicTriangulation(GluedTriangles glued,
                                                const std::vector<Real>& lengths)
     : corners_(std::move(glued.corners)),
       side_edge_(corners_.size()),
+      lengths_(corners_.size()),
       edge_sides_(std::move(glued.edges)) {
-  lengths_.reserve(edge_sides_.size());
   for (uint32_t e = 0; e < edge_sides_.size(); ++e) {
-    for (uint32_t side : edge_sides_[e]) side_edge_[side] = e;
-    lengths_.push_back(lengths[glued.mesh_edge[e]]);
+    for (uint32_t side : edge_sides_[e]) {
+      side_edge_[side] = e;
+      lengths_[side] = lengths[glued.mesh_edge[e]];
+    }
   }
 }
 
 IntrinsicTriangulation::Real IntrinsicTriangulation::Mollify(Real slack) {
   Real added = 0;
   for (uint32_t side = 0; side < corners_.size(); side += 3) {
-    added =
-        std::max(added, slack - TriangleSlack(Length(side), Length(side + 1),
-                                              Length(side + 2)));
+    added = std::max(added,
+                     slack - TriangleSlack(lengths_[side], lengths_[side + 1],
+                                           lengths_[side + 2]));
   }
   if (added > 0)
     for (Real& length : lengths_) length += added;
@@ -48,8 +50,8 @@ IntrinsicTriangulation::Real IntrinsicTriangulation::Mollify(Real slack) {
 
 IntrinsicTriangulation::Corner IntrinsicTriangulation::OppositeCorner(
     uint32_t side) const {
-  const Real a = Length(side), b = Length(Next(side)),
-             c = Length(Previous(side));
+  const Real a = lengths_[side], b = lengths_[Next(side)],
+             c = lengths_[Previous(side)];
   return {ScaledCotangent(a, b, c), TriangleArea(a, b, c)};
 }
 
@@ -68,13 +70,13 @@ bool IntrinsicTriangulation::IsDelaunay(uint32_t e) const {
 // The two triangles are laid out in the plane on either side of the edge.
 IntrinsicTriangulation::Real IntrinsicTriangulation::LengthOfFlipped(
     uint32_t e) const {
-  const Real base = lengths_[e];
   const auto [s, t] = edge_sides_[e];
+  const Real base = lengths_[s];
   auto along = [&](Real opposite, Real adjacent) {
     return ScaledCotangent(opposite, base, adjacent) / (2 * base);
   };
-  const Real x_s = along(Length(Next(s)), Length(Previous(s)));
-  const Real x_t = along(Length(Previous(t)), Length(Next(t)));
+  const Real x_s = along(lengths_[Next(s)], lengths_[Previous(s)]);
+  const Real x_t = along(lengths_[Previous(t)], lengths_[Next(t)]);
   const Real heights =
       2 * (OppositeCorner(s).area + OppositeCorner(t).area) / base;
   return std::hypot(x_s - x_t, heights);
@@ -83,7 +85,7 @@ IntrinsicTriangulation::Real IntrinsicTriangulation::LengthOfFlipped(
 // Edge i -> j between apexes k and l becomes l -> k: triangles (i j k), (j i l)
 // become (l k i), (k l j), each in the place of the old one.
 void IntrinsicTriangulation::Flip(uint32_t e) {
-  lengths_[e] = LengthOfFlipped(e);
+  const Real length = LengthOfFlipped(e);
   const auto [s, t] = edge_sides_[e];
   const uint32_t k = corners_[Previous(s)], l = corners_[Previous(t)];
   const std::array<std::array<uint32_t, 2>, 4> moves = {
@@ -93,21 +95,25 @@ void IntrinsicTriangulation::Flip(uint32_t e) {
        {Next(s), Previous(t)}}};  // j -> k
   struct Moved {
     uint32_t to, corner, edge, end;
+    Real length;
   };
   std::array<Moved, 4> moved;
   // All is read before any is written: two of the sides may be one edge.
   for (int i = 0; i < 4; ++i) {
     const auto [from, to] = moves[i];
     const uint32_t edge = side_edge_[from];
-    moved[i] = {to, corners_[from], edge, edge_sides_[edge][1] == from};
+    moved[i] = {to, corners_[from], edge, edge_sides_[edge][1] == from,
+                lengths_[from]};
   }
   for (const Moved& m : moved) {
     corners_[m.to] = m.corner;
     side_edge_[m.to] = m.edge;
     edge_sides_[m.edge][m.end] = m.to;
+    lengths_[m.to] = m.length;
   }
   corners_[s] = l;
   corners_[t] = k;
+  lengths_[s] = lengths_[t] = length;
 }
 
 absl::StatusOr<uint64_t> IntrinsicTriangulation::FlipToDelaunay(

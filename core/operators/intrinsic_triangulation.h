@@ -63,7 +63,6 @@ class IntrinsicTriangulation {
     Real area;
   };
 
-  Real Length(uint32_t side) const { return lengths_[side_edge_[side]]; }
   Corner OppositeCorner(uint32_t side) const;
   Real CotangentSum(uint32_t e) const;
   bool IsDelaunay(uint32_t e) const;
@@ -75,10 +74,11 @@ class IntrinsicTriangulation {
   //    between the same two vertices in opposite directions.
   // 2. The sides of a triangle obey the triangle inequality, but for rounding.
   // 3. A flip changes no distance on the surface, but for rounding.
-  std::vector<uint32_t> corners_;    // by side: the vertex where it begins
-  std::vector<uint32_t> side_edge_;  // by side
+  // By side, so that what belongs to a triangle lies together.
+  std::vector<uint32_t> corners_;  // the vertex where it begins
+  std::vector<uint32_t> side_edge_;
+  std::vector<Real> lengths_;  // both sides of an edge have the same
   std::vector<std::array<uint32_t, 2>> edge_sides_;
-  std::vector<Real> lengths_;  // by edge
 };
 
 }  // namespace marrow

@@ -142,7 +142,7 @@ absl::Status Rejected(const std::string& message) {
 // Mollifies and flips until nothing is flat, then once more for what is short.
 absl::Status MakeDelaunay(IntrinsicTriangulation& triangulation, Real mean,
                           const CancelToken& cancel, LaplacianReport& report) {
-  const uint64_t max_flips = kMaxFlipsPerEdge * triangulation.NumEdges();
+  const uint64_t max_flips = MaxFlips(triangulation.NumEdges());
   for (double slack : {kFlatSlack, kShortSlack}) {
     const Real added = triangulation.Mollify(slack * mean);
     if (slack == kShortSlack && added == 0) break;
@@ -154,10 +154,10 @@ absl::Status MakeDelaunay(IntrinsicTriangulation& triangulation, Real mean,
           report.mollification, " mean edges; remesh the surface"));
     auto flips = triangulation.FlipToDelaunay(max_flips - report.flips, cancel);
     if (absl::IsResourceExhausted(flips.status()))
-      return Rejected(absl::StrCat(
-          "more than ", kMaxFlipsPerEdge,
-          " flips an edge do not make the triangles Delaunay; remesh the "
-          "surface"));
+      return Rejected(
+          absl::StrCat(max_flips,
+                       " edge flips do not make the triangles Delaunay; remesh "
+                       "the surface"));
     MARROW_RETURN_IF_ERROR(flips.status());
     report.flips += *flips;
   }
@@ -250,7 +250,8 @@ Eigen::SparseMatrix<double> Matrix(const std::vector<WeightedEdge>& edges,
 
 Eigen::VectorXd Masses(const Eigen::VectorXd& areas) {
   const Eigen::VectorXd lifted = areas.cwiseMax(kLeastMass * areas.mean());
-  return lifted / lifted.sum();
+  const Real sum = std::accumulate(lifted.begin(), lifted.end(), Real(0));
+  return lifted / static_cast<double>(sum);
 }
 
 absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +32,7 @@ struct LaplacianReport {
   // What was added to every edge so that no triangle is degenerate, in units
   // of the mean edge length; at most kMaxMollification.
   double mollification = 0;
-  // At most kMaxFlipsPerEdge for each edge of the surface that was flipped.
-  uint64_t flips = 0;
+  uint64_t flips = 0;  // at most MaxFlips() of the edges that could be flipped
   uint64_t nonmanifold_edges = 0;  // of three faces or more
 };
 
@@ -50,7 +50,13 @@ struct Laplacian {
 };
 
 inline constexpr double kMaxMollification = 1e-3;
-inline constexpr uint64_t kMaxFlipsPerEdge = 50;
+
+// Bad meshes take up to 5 flips an edge, long twisted fans a number that grows
+// with the square: 50 an edge are allowed, and of those beyond 10 an edge, as
+// many as take some seconds.
+constexpr uint64_t MaxFlips(uint64_t edges) {
+  return edges * 10 + std::min<uint64_t>(edges * 40, 10'000'000);
+}
 
 // Sharp and Crane 2020, "A Laplacian for Nonmanifold Triangle Meshes": works on
 // edge lengths alone, so degenerate triangles and coordinates of any size are

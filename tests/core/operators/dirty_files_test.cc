@@ -44,20 +44,14 @@ TEST(DirtyFilesTest, HoldEveryGuarantee) {
     if (decoded.faces.empty()) continue;
     const auto canonical = Canonicalize(decoded);
     if (!canonical.ok()) {
-      std::cout << entry.path().filename() << ": " << canonical.status()
-                << "\n";
+      EXPECT_EQ(entry.path().filename(), "degenerate_mesh.obj");
       continue;
     }
     const auto laplacian = BuildLaplacian(canonical->mesh);
     ASSERT_TRUE(laplacian.ok()) << laplacian.status();
     ExpectGuarantees(canonical->mesh, *laplacian);
-    const LaplacianReport& report = laplacian->report;
-    EXPECT_EQ(report.nonmanifold_edges, canonical->report.nonmanifold_edges);
-    std::cout << entry.path().filename().string() << ": "
-              << canonical->report.faces << " faces, path "
-              << static_cast<int>(report.path) << ", " << report.flips
-              << " flips, mollified " << report.mollification << ", "
-              << report.nonmanifold_edges << " non-manifold edges\n";
+    EXPECT_EQ(laplacian->report.nonmanifold_edges,
+              canonical->report.nonmanifold_edges);
   }
 }
 

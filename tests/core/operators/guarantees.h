@@ -34,8 +34,7 @@ inline void ExpectGuarantees(const TriangleMesh& mesh,
   EXPECT_GT(laplacian.M.minCoeff(), 0);
   EXPECT_NEAR(laplacian.M.sum(), 1, 1e-12);
   EXPECT_LE(laplacian.report.mollification, kMaxMollification);
-  EXPECT_LE(laplacian.report.flips,
-            kMaxFlipsPerEdge * 3 * uint64_t{mesh.NumFaces()});
+  EXPECT_LE(laplacian.report.flips, MaxFlips(3 * uint64_t{mesh.NumFaces()}));
   EXPECT_EQ(CheckLaplacian(laplacian), absl::OkStatus());
 }
 
