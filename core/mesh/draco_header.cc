@@ -213,11 +213,15 @@ absl::Status CheckCounts(uint64_t faces, uint64_t vertices, size_t byte,
                                  " vertices, the limit is ",
                                  limits.max_vertices, "; simplify it"));
   }
-  if (vertices < 3 || vertices > 3 * faces) {
+  if (vertices < 3) {
+    return Rejected(absl::StrCat("the mesh has ", vertices,
+                                 " vertices, so all its faces are degenerate; "
+                                 "a triangle takes three"));
+  }
+  if (vertices > 3 * faces) {
     return Malformed(
         byte, absl::StrCat(vertices, " vertices cannot belong to ", faces,
-                           " faces; leave out vertices that no "
-                           "face uses"));
+                           " faces; leave out vertices that no face uses"));
   }
   return absl::OkStatus();
 }

@@ -106,7 +106,7 @@ TEST(DracoHeaderTest, BoundsTheCounts) {
   ExpectRejected(Edgebreaker({.vertices = 2'000'001, .faces = 3'000'000}),
                  "declares 2000001 vertices");
   ExpectRejected(Edgebreaker({.attribute_data = 9}), "9 attributes");
-  ExpectMalformed(Edgebreaker({.vertices = 2}), "2 vertices cannot");
+  ExpectRejected(Edgebreaker({.vertices = 2}), "has 2 vertices");
   ExpectMalformed(Edgebreaker({.vertices = 19}), "19 vertices cannot");
   ExpectMalformed(Edgebreaker({.symbols = 7}), "7 symbols cannot");
   ExpectMalformed(Edgebreaker({.symbols = 4}), "4 symbols cannot");
