@@ -33,7 +33,10 @@ constexpr double kGapShare = 0.1;
 // A value beyond the end is known well enough for its gap to be judged where
 // its residual is at most this share of the mean distance.
 constexpr double kKnownShare = 0.02;
-// Looking for convergence before this share of the usual basis is in vain.
+// A pair's residual is at most this share of the mean distance, or neighbours
+// are not told apart.
+constexpr double kResolvedShare = 0.05;
+// Looking for convergence in a basis of fewer vectors a pair is in vain.
 constexpr double kFirstLook = 1.5;
 
 // Ritz pairs on one side of the shift, the nearest first.
@@ -61,11 +64,11 @@ class BandFinder {
     const int first_look = static_cast<int>(kFirstLook * wanted);
     const int most = std::min(matrix_.n - kBlock, 6 * wanted + 20 * kBlock);
     int extra = request_.extra_steps;
+    const int next_look = std::min(first_look, most - kBlock);
     while (T_.rows() + kBlock <= most) {
       MARROW_RETURN_IF_ERROR(Step());
       on_step();
-      if (T_.rows() < std::min(first_look, most - kBlock) || !Converged())
-        continue;
+      if (T_.rows() < next_look || !Converged()) continue;
       if (extra-- <= 0) return Extract();
     }
     return absl::InternalError(
@@ -113,12 +116,13 @@ class BandFinder {
     tail_ = R_ * ritz_.eigenvectors().bottomRows(kBlock);
     above_ = MakeSide(true);
     below_ = MakeSide(false);
-    floor_ = 0;
-    if (request_.all_below && below_.value.size() > 1)
-      floor_ = below_.value[below_.value.size() - 2];
     if (below_.value.empty() && above_.value.empty()) return false;
+    floor_ = request_.all_below ? SecondLowest() : 0;
     const double distance = MeanDistance();
-    num_above_ = Pick(above_, request_.above, request_.any_end_above, distance);
+    num_above_ =
+        request_.above == 0
+            ? 0
+            : Pick(above_, request_.above, request_.any_end_above, distance);
     num_below_ = Pick(below_, request_.below, request_.all_below, distance);
     return num_above_ >= 0 && num_below_ >= 0;
   }
@@ -137,6 +141,12 @@ class BandFinder {
     return side;
   }
 
+  // lambda_1, where the band begins with lambda_0; the shift if in doubt.
+  double SecondLowest() const {
+    const size_t below = std::min<size_t>(below_.value.size(), request_.below);
+    return below > 1 ? below_.value[below - 2] : factor_.shift();
+  }
+
   double MeanDistance() const {
     const int above = std::min<int>(above_.value.size(), request_.above);
     const int below = std::min<int>(below_.value.size(), request_.below);
@@ -145,9 +155,10 @@ class BandFinder {
     return (high - low) / std::max(1, above + below);
   }
 
-  bool IsConverged(const Side& side, int i) const {
+  bool IsConverged(const Side& side, int i, double distance) const {
     return side.residual[i] <=
-           request_.tolerance * std::max(side.value[i], floor_);
+           std::min(request_.tolerance * std::max(side.value[i], floor_),
+                    kResolvedShare * distance);
   }
 
   // How many pairs of the side to take: at least `wanted`, then up to a gap
@@ -155,7 +166,7 @@ class BandFinder {
   int Pick(const Side& side, int wanted, bool any_end, double distance) const {
     const int size = static_cast<int>(side.value.size());
     for (int count = 0; count <= size; ++count) {
-      if (count > 0 && !IsConverged(side, count - 1)) return -1;
+      if (count > 0 && !IsConverged(side, count - 1, distance)) return -1;
       if (count < wanted) continue;
       if (any_end) return count;
       if (count == size) return -1;
@@ -180,14 +191,19 @@ class BandFinder {
       chosen.push_back(above_.index[i]);
       band.values.push_back(above_.value[i]);
     }
-    band.next_above = request_.any_end_above || !HasNext(above_, num_above_)
-                          ? kInfinity
-                          : above_.value[num_above_];
+    band.next_above = NextAbove();
     band.next_below = request_.all_below || !HasNext(below_, num_below_)
                           ? -kInfinity
                           : below_.value[num_below_];
     MARROW_RETURN_IF_ERROR(WriteVectors(Coefficients(chosen), band));
     return band;
+  }
+
+  double NextAbove() const {
+    if (request_.above == 0) return factor_.shift();
+    if (request_.any_end_above || !HasNext(above_, num_above_))
+      return kInfinity;
+    return above_.value[num_above_];
   }
 
   static bool HasNext(const Side& side, int count) {
