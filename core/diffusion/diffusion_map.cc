@@ -45,6 +45,7 @@ DiffusionMap BuildDiffusionMap(const EigenPairs& pairs,
   for (size_t i = 0; i < vertices.size(); ++i)
     Phi.row(i) = pairs.eigenvectors.row(vertices[i])
                      .segment(1, dimension)
+                     .cast<double>()
                      .cwiseProduct(weight);
   return Phi;
 }

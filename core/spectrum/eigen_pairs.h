@@ -14,15 +14,18 @@
 
 namespace marrow {
 
+// Row-major: the rows are what the diffusion map reads.
+using EigenvectorMatrix =
+    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 // L phi = lambda M phi on the canonical mesh, scaled to area 1 (so lambda and
 // the time scale t are dimensionless). Immutable once built.
 struct EigenPairs {
   // Ascending; entry 0 is the constant pair's, exactly 0.
   Eigen::VectorXd eigenvalues;
-  // n x pairs, a column an eigenvector, M-orthonormal. Row-major: the rows are
-  // what the diffusion map reads.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
-      eigenvectors;
+  // n x pairs, a column an eigenvector, M-orthonormal; rounded to this precision
+  // after its residual was certified.
+  EigenvectorMatrix eigenvectors;
   // Area of the canonical mesh in the payload's units: an eigenvalue in those
   // units is lambda / area, an eigenvector phi / sqrt(area).
   double area = 0;
@@ -35,7 +38,8 @@ struct EigenPairs {
     return static_cast<uint32_t>(eigenvalues.size());
   }
   uint64_t Bytes() const {
-    return sizeof(double) * (eigenvalues.size() + eigenvectors.size());
+    return sizeof(double) * eigenvalues.size() +
+           sizeof(float) * eigenvectors.size();
   }
 };
 

@@ -1,5 +1,4 @@
-// The eigensolver: shift-invert Lanczos (Spectra) over a sparse Cholesky
-// factorisation, a dense solver for tiny meshes.
+// The eigensolver: spectrum slicing (slicing.h), a dense solver for tiny meshes.
 #ifndef MARROW_CORE_SPECTRUM_SOLVER_H_
 #define MARROW_CORE_SPECTRUM_SOLVER_H_
 
@@ -12,7 +11,7 @@
 namespace marrow {
 
 // Changes whenever the same mesh may give other bytes.
-inline constexpr char kSolverRevision[] = "lanczos/2";
+inline constexpr char kSolverRevision[] = "slicing/1";
 
 // Solves anew at every call; keeps nothing.
 class SolverEigenPairSource : public EigenPairSource {

@@ -32,9 +32,10 @@ Eigen::VectorXd DenseReference(const CanonicalMesh& mesh) {
 }
 
 double WorstOrthonormality(const CanonicalMesh& mesh, const EigenPairs& pairs) {
-  const Eigen::MatrixXd products = pairs.eigenvectors.transpose() *
+  const Eigen::MatrixXd vectors = pairs.eigenvectors.cast<double>();
+  const Eigen::MatrixXd products = vectors.transpose() *
                                    BuildLaplacian(mesh.mesh)->M.asDiagonal() *
-                                   pairs.eigenvectors;
+                                   vectors;
   return (products -
           Eigen::MatrixXd::Identity(products.rows(), products.cols()))
       .cwiseAbs()
@@ -46,7 +47,7 @@ double WorstResidual(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   const Laplacian laplacian = *BuildLaplacian(mesh.mesh);
   double worst = 0;
   for (uint32_t k = 0; k < pairs.NumPairs(); ++k) {
-    const Eigen::VectorXd phi = pairs.eigenvectors.col(k);
+    const Eigen::VectorXd phi = pairs.eigenvectors.col(k).cast<double>();
     const double lambda = pairs.eigenvalues[k];
     const Eigen::VectorXd residual =
         laplacian.L * phi - lambda * laplacian.M.cwiseProduct(phi);
@@ -147,7 +148,7 @@ TEST(SolverTest, GivesTheSameBytesTwice) {
                         sizeof(double) * a->eigenvalues.size()),
             0);
   EXPECT_EQ(std::memcmp(a->eigenvectors.data(), b->eigenvectors.data(),
-                        sizeof(double) * a->eigenvectors.size()),
+                        sizeof(float) * a->eigenvectors.size()),
             0);
 }
 

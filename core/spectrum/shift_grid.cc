@@ -1,0 +1,119 @@
+#include "core/spectrum/shift_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/status_macros.h"
+
+namespace marrow {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Mean distance of a surface's eigenvalues, 4 pi (Weyl): the first guess.
+constexpr double kWeylDistance = 12.566370614359172;
+// Pairs below a shift that are too many for one band, in usual bands.
+constexpr double kTooMany = 1.4;
+constexpr double kTooFew = 0.35;
+// The last band reaches as far above its shift.
+constexpr double kLastBand = 0.8;
+constexpr int kMostTries = 60;
+// An interval of this relative width that holds too many is a cluster.
+constexpr double kClusterWidth = 1e-8;
+// Many pairs in an interval this short, in units of the distance that holds
+// few, are far denser than those.
+constexpr double kStepWidth = 0.05;
+constexpr int kMostNudges = 8;
+constexpr double kNudge = 1e-7;
+
+}  // namespace
+
+absl::Status FactoriseNear(double shift, SupernodalFactor& factor,
+                           const CancelToken& cancel) {
+  absl::Status status;
+  for (int i = 0; i < kMostNudges; ++i) {
+    status = factor.Compute(shift * (1 + i * kNudge), cancel);
+    if (status.code() != absl::StatusCode::kFailedPrecondition) return status;
+  }
+  return absl::InternalError(
+      absl::StrCat("the matrix cannot be factorised: ", status.message()));
+}
+
+double ShiftGrid::Guess() const {
+  const double distance =
+      mean_distance_ > 0 ? mean_distance_ : kWeylDistance / 2;
+  const int ahead = covered_ + wanted_ / 2 - last_below_;
+  return last_shift_ + distance * ahead;
+}
+
+// Moves the shift until the pairs below it that no band finds yet are as many as
+// a band's. Where more than that are too close to be parted, the shift is left
+// below them and `cluster_end` is the count above them, else 0. Where few pairs
+// are far below very many, the shift is left amid the two and `dense_above`:
+// seen from among the many, the few are lost.
+absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
+                               const CancelToken& cancel, int& cluster_end,
+                               bool& dense_above) {
+  cluster_end = 0;
+  dense_above = false;
+  double low = last_shift_, high = kInfinity, shift = Guess();
+  int high_count = 0, low_count = covered_;
+  for (int i = 0; i < kMostTries; ++i) {
+    MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, cancel));
+    const int found = factor.negative_pivots() - covered_;
+    const bool too_many = found > kTooMany * wanted_;
+    if (!too_many && (found >= kTooFew * wanted_ ||
+                      factor.negative_pivots() >= pairs_))
+      return absl::OkStatus();
+    if (too_many) {
+      high = shift;
+      high_count = factor.negative_pivots();
+    } else {
+      low = shift;
+      low_count = factor.negative_pivots();
+    }
+    if (low_count > covered_ && high - low < kStepWidth * (low - last_shift_)) {
+      dense_above = true;
+      MARROW_RETURN_IF_ERROR(
+          FactoriseNear(0.5 * (last_shift_ + low), factor, cancel));
+      if (factor.negative_pivots() == low_count) return absl::OkStatus();
+      return FactoriseNear(low, factor, cancel);
+    }
+    if (high - low < kClusterWidth * high) {
+      cluster_end = high_count;
+      return too_many ? FactoriseNear(low, factor, cancel) : absl::OkStatus();
+    }
+    shift = std::isinf(high) ? last_shift_ + 2 * (shift - last_shift_)
+                             : 0.5 * (low + high);
+  }
+  return absl::InternalError("no place for a shift was found");
+}
+
+absl::Status ShiftGrid::Plan(SupernodalFactor& factor,
+                             const CancelToken& cancel, PlannedBand& band) {
+  int cluster_end;
+  bool dense_above;
+  MARROW_RETURN_IF_ERROR(Settle(factor, cancel, cluster_end, dense_above));
+  band = PlannedBand();
+  band.shift = factor.shift();
+  band.below_shift = factor.negative_pivots();
+  band.request.tolerance = tolerance_;
+  band.request.below = band.below_shift - covered_;
+  band.request.all_below = covered_ == 0;
+  const int missing = pairs_ - band.below_shift;
+  int above = missing <= kLastBand * wanted_ ? missing : wanted_ / 2;
+  if (cluster_end > 0) above = std::min(missing, cluster_end - band.below_shift);
+  if (dense_above) above = 0;
+  band.request.above = std::max(0, above);
+  band.request.any_end_above = cluster_end > pairs_;
+  if (band.below_shift > last_below_)
+    mean_distance_ =
+        (band.shift - last_shift_) / (band.below_shift - last_below_);
+  last_shift_ = band.shift;
+  last_below_ = band.below_shift;
+  covered_ = band.below_shift + band.request.above;
+  return absl::OkStatus();
+}
+
+}  // namespace marrow

@@ -1,0 +1,70 @@
+// What the factors L D L' of all shifts of one matrix have in common: the order
+// of the unknowns, the columns that are kept together, and where what goes.
+#ifndef MARROW_CORE_SPECTRUM_SUPERNODAL_STRUCTURE_H_
+#define MARROW_CORE_SPECTRUM_SUPERNODAL_STRUCTURE_H_
+
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
+#include "core/spectrum/dense_kernels.h"
+
+namespace marrow {
+
+// Immutable once built; the threads of a solve share it.
+//
+// A supernode is a run of columns with one structure below them. Its panel is
+// the transpose of those columns: a row a column, first the columns' own
+// triangle, padded to a multiple of kPad, then the rows below them, padded too.
+struct SupernodalStructure {
+  struct Supernode {
+    int first;    // column
+    int width;    // columns
+    int parent;   // the supernode that takes its update, or -1
+    int num_rows;      // below the columns
+    size_t rows;       // where they begin in `rows` and `relative`
+    size_t panel;      // where its panel begins, in doubles
+    size_t entries;    // where its entries begin
+    int OwnWidth() const { return PadUp(width); }
+    int PanelStride() const { return PadUp(width) + PadUp(num_rows); }
+    size_t PanelSize() const {
+      return static_cast<size_t>(width) * PanelStride();
+    }
+  };
+
+  int n = 0;
+  std::vector<int> order;  // new -> old
+  // Every supernode comes after its children.
+  std::vector<Supernode> supernodes;
+  std::vector<int> rows;      // ascending within a supernode
+  std::vector<int> relative;  // of a row, its column in the parent's panel
+  // The upper triangle with the diagonal, in the new order, by rows: entry e of
+  // row i, row_start[i] <= e < row_start[i + 1], diagonal first.
+  std::vector<size_t> row_start;
+  std::vector<int> columns;
+  std::vector<double> values;
+  std::vector<uint32_t> offsets;  // in the panel of the row's supernode
+  size_t panel_doubles = 0;
+  // The most doubles that updates on their way to parents take at once.
+  size_t stack_doubles = 0;
+  size_t largest_front_rows = 0;
+
+  // Y = A X for one block of vectors.
+  void Multiply(const double* X, double* Y) const;
+};
+
+// `matrix` is symmetric with a full pattern and diagonal; `positions` has a row
+// of three an unknown and guides the order. Errors: CANCELLED;
+// RESOURCE_EXHAUSTED where a factor would take more than `max_factor_bytes`,
+// which only a mesh far from a surface can do.
+absl::StatusOr<SupernodalStructure> AnalyseStructure(
+    const Eigen::SparseMatrix<double>& matrix, const double* positions,
+    size_t max_factor_bytes, int threads, const CancelToken& cancel);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_SPECTRUM_SUPERNODAL_STRUCTURE_H_
