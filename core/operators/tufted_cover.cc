@@ -25,14 +25,14 @@ bool Ascends(const Triangle& face, uint32_t i) {
 // beginning at the first face.
 std::vector<double> SheetAngles(const TriangleMesh& mesh,
                                 const Adjacency& adjacency, uint32_t e) {
-  const auto [a, b] = adjacency.EdgeVertices(e);
+  const std::array<uint32_t, 2> ends = adjacency.EdgeVertices(e);
   const std::span<const uint32_t> faces = adjacency.EdgeFaces(e);
+  const Eigen::Vector3d origin = mesh.Position(ends[0]);
   const Eigen::Vector3d along =
-      (mesh.Position(b) - mesh.Position(a)).stableNormalized();
+      (mesh.Position(ends[1]) - origin).stableNormalized();
   auto direction = [&](uint32_t f) -> Eigen::Vector3d {
     const uint32_t apex = mesh.faces[f][(SideIndex(adjacency, f, e) + 2) % 3];
-    const Eigen::Vector3d w =
-        (mesh.Position(apex) - mesh.Position(a)).stableNormalized();
+    const Eigen::Vector3d w = (mesh.Position(apex) - origin).stableNormalized();
     return w - w.dot(along) * along;
   };
   const Eigen::Vector3d x = direction(faces[0]), y = along.cross(x);
