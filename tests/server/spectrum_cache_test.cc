@@ -104,13 +104,13 @@ TEST_F(SpectrumCacheTest, CountsAboveTheMeshAreOneRequest) {
 }
 
 TEST_F(SpectrumCacheTest, TheBudgetDropsWhatWasUsedLongestAgo) {
-  // An entry of 10 pairs: (11 + 1100) doubles, somewhat over 8,888 bytes.
-  SpectrumCache cache(solver_, 20'000);
+  // An entry of 10 pairs: 11 doubles and 1,100 floats, somewhat over 4,488 bytes.
+  SpectrumCache cache(solver_, 11'000);
   ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
   ASSERT_TRUE(Get(cache, MeshNamed(2), 10).ok());
   ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
   ASSERT_TRUE(Get(cache, MeshNamed(3), 10).ok());
-  EXPECT_LE(cache.bytes(), 20'000u);
+  EXPECT_LE(cache.bytes(), 11'000u);
   EXPECT_TRUE(cache.Contains(MeshNamed(1), 10));
   EXPECT_FALSE(cache.Contains(MeshNamed(2), 10));
   EXPECT_TRUE(cache.Contains(MeshNamed(3), 10));

@@ -70,8 +70,10 @@ void ExpectSound(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   }
   EXPECT_TRUE((pairs.eigenvectors.col(0).array() == 1).all());
   EXPECT_EQ(pairs.area, mesh.report.area);
-  EXPECT_LE(WorstOrthonormality(mesh, pairs), 1e-10);
-  EXPECT_LE(WorstResidual(mesh, pairs), 1e-6);
+  // Certified to 1e-6 before the vectors were rounded to float32. What the
+  // rounding adds to a residual grows with the largest eigenvalue of the mesh.
+  EXPECT_LE(WorstOrthonormality(mesh, pairs), 1e-6);
+  EXPECT_LE(WorstResidual(mesh, pairs), 2e-4);
 }
 
 TEST(SolverTest, LanczosMissesNoEigenvalue) {
