@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <ctime>
 #include <utility>
 
 #include "client/command/exit_code.h"
@@ -36,12 +38,19 @@ Interrupt::~Interrupt() {
 
 void Interrupt::Watch() {
   const sigset_t signals = WatchedSignals();
-  for (int signal = 0; sigwait(&signals, &signal) == 0;) {
-    if (stopping_) return;
-    if (signal_ != 0) _exit(kExitSignal + signal);
-    signal_ = signal;
-    on_signal_();
+  int first = 0;
+  while (sigwait(&signals, &first) != 0) {
   }
+  if (stopping_) return;
+  signal_ = first;
+  on_signal_();
+  // Whatever reads from a pipe into which nobody writes does not come back.
+  constexpr timespec kPatience{5, 0};
+  int second = 0;
+  do {
+    second = sigtimedwait(&signals, nullptr, &kPatience);
+  } while (second < 0 && errno == EINTR);
+  if (!stopping_) _exit(kExitSignal + (second > 0 ? second : first));
 }
 
 }  // namespace marrow::client

@@ -55,8 +55,8 @@ completed (with the files that were written) or error; at last one summary.
 A large level or skeleton comes in several lines, whose numbers add up.
 Lines of several files may alternate. A failure is told on standard error too.
 
-Ctrl-C stops the work and leaves no file half written; a second one ends at
-once.)";
+Ctrl-C stops the work and leaves no file half written; a second one, or five
+seconds more, ends it at once.)";
 
 constexpr char kSpectrumFooter[] =
     R"(Prints the eigenvalues of the Laplace-Beltrami operator, ascending, one a line,

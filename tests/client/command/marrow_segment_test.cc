@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -384,6 +385,16 @@ TEST_F(MarrowSegmentTest, CtrlCEndsSoonAndLeavesNothing) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_THAT(process.Out(), Not(HasSubstr("\"completed\"")));
   EXPECT_FALSE(std::filesystem::exists(Out()));
+}
+
+TEST_F(MarrowSegmentTest, CtrlCEndsAReadThatNeverReturns) {
+  const std::string pipe = folder_ / "pipe.off";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  Subprocess process({ProgramPath("marrow"), "segment", Sample(), pipe, "-o",
+                      Out(), "--levels", "1", "--threads", "1"});
+  ASSERT_TRUE(process.WaitForOutput("octopus.seg"));
+  process.Signal(SIGINT);
+  EXPECT_EQ(process.Wait(), 130);
 }
 
 }  // namespace
