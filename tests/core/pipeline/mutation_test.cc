@@ -36,7 +36,7 @@ void ExpectSoundPairs(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   if (lambda.size() > 1) {
     EXPECT_GT(lambda[1], 0) << "the mesh is one body";
   }
-  const Laplacian laplacian = BuildLaplacian(mesh.mesh);
+  const Laplacian laplacian = BuildLaplacian(mesh.mesh).value();
   ASSERT_GT(laplacian.M.minCoeff(), 0);
   const Eigen::MatrixXd Phi = pairs.eigenvectors;
   const Eigen::MatrixXd gram =
