@@ -42,6 +42,18 @@ absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
   return problem;
 }
 
+// All that is not the constant pair is orthogonal to it, which the dense solver
+// leaves to rounding: too much where masses differ by many orders.
+void RemoveConstant(const Eigen::VectorXd& inverse_sqrt_mass,
+                    MatrixPairs& raw) {
+  const Eigen::VectorXd constant =
+      inverse_sqrt_mass.cwiseInverse().normalized();
+  for (Eigen::Index k = 1; k < raw.vectors.cols(); ++k) {
+    raw.vectors.col(k) -= constant.dot(raw.vectors.col(k)) * constant;
+    raw.vectors.col(k).normalize();
+  }
+}
+
 // The entry of largest magnitude (the first, where several are) is positive,
 // and the constant pair, which is known exactly, is exact.
 void Finish(EigenPairs& pairs) {
@@ -130,7 +142,9 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
   MARROW_RETURN_IF_ERROR(cancel.Check());
   auto result = std::make_shared<EigenPairs>();
   if (n <= kDenseVertices || pairs > kSlicedShare * n) {
-    Assign(SolveDensely(problem.A, pairs), problem.inverse_sqrt_mass, *result);
+    MatrixPairs raw = SolveDensely(problem.A, pairs);
+    RemoveConstant(problem.inverse_sqrt_mass, raw);
+    Assign(raw, problem.inverse_sqrt_mass, *result);
   } else {
     MARROW_RETURN_IF_ERROR(
         SolveSparse(mesh.mesh, problem, pairs, cancel, progress, *result));
