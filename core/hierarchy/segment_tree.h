@@ -30,7 +30,8 @@ struct SegmentNode {
 
 // Invariants: nodes[i].id == i; node 0 is the root and has every face; the
 // faces of a node's children partition the node's; every parent's id is less
-// than its children's; siblings are ordered by falling area, then least face.
+// than its children's; siblings are ordered by falling area, then least face,
+// those attached to them (operators/bodies.h) left out.
 struct SegmentTree {
   std::vector<SegmentNode> nodes;
 

@@ -81,22 +81,27 @@ SegmentNode TreeBuilder::MakeNode(uint32_t parent, Piece piece) const {
   SegmentNode node;
   node.parent = parent;
   if (parent != kNoIndex) node.level = tree_.nodes[parent].level + 1;
+  node.faces = std::move(piece.faces);
+  node.medial_structure = std::move(piece.medial_structure);
+  MeasureNode(context_.mesh, context_.face_areas, mesh_area_, node);
+  return node;
+}
+
+void MeasureNode(const TriangleMesh& mesh,
+                 const std::vector<double>& face_areas, double mesh_area,
+                 SegmentNode& node) {
   double share = 0;
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
   Eigen::Vector3d plain = Eigen::Vector3d::Zero();
-  for (uint32_t f : piece.faces) {
+  for (uint32_t f : node.faces) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (uint32_t v : context_.mesh.faces[f])
-      centre += context_.mesh.Position(v) / 3;
-    weighted += context_.face_areas[f] * centre;
-    plain += centre / static_cast<double>(piece.faces.size());
-    share += context_.face_areas[f];
+    for (uint32_t v : mesh.faces[f]) centre += mesh.Position(v) / 3;
+    weighted += face_areas[f] * centre;
+    plain += centre / static_cast<double>(node.faces.size());
+    share += face_areas[f];
   }
-  node.area = share * mesh_area_;
+  node.area = share * mesh_area;
   node.centroid = share > 0 ? Eigen::Vector3d(weighted / share) : plain;
-  node.faces = std::move(piece.faces);
-  node.medial_structure = std::move(piece.medial_structure);
-  return node;
 }
 
 }  // namespace marrow

@@ -43,6 +43,12 @@ class TreeBuilder {
   SegmentTree tree_;
 };
 
+// Fills area and centroid from the faces. `face_areas` are shares of
+// `mesh_area`.
+void MeasureNode(const TriangleMesh& mesh,
+                 const std::vector<double>& face_areas, double mesh_area,
+                 SegmentNode& node);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_HIERARCHY_TREE_BUILDER_H_

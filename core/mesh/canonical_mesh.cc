@@ -255,7 +255,9 @@ absl::Status CheckSize(const MeshReport& report) {
   return absl::OkStatus();
 }
 
-Digest DigestOf(const TriangleMesh& mesh) {
+}  // namespace
+
+Digest GeometryDigestOf(const TriangleMesh& mesh) {
   DigestBuilder builder("marrow.geometry/1");
   builder.AddU64(mesh.NumVertices());
   builder.AddU64(mesh.NumFaces());
@@ -263,8 +265,6 @@ Digest DigestOf(const TriangleMesh& mesh) {
   builder.Add(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle));
   return builder.Finish();
 }
-
-}  // namespace
 
 absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
   if (decoded.faces.empty()) return Rejected("the mesh has no faces");
@@ -297,7 +297,7 @@ absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
   for (uint32_t spot : spots.of_point) {
     result.point_map.push_back(vertex_of_spot[spot]);
   }
-  result.geometry_digest = DigestOf(result.mesh);
+  result.geometry_digest = GeometryDigestOf(result.mesh);
   return result;
 }
 

@@ -41,6 +41,9 @@ struct CanonicalMesh {
 // Thread safe.
 absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded);
 
+// The digest of a mesh that is in canonical order. Thread safe.
+Digest GeometryDigestOf(const TriangleMesh& mesh);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_MESH_CANONICAL_MESH_H_

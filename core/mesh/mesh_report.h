@@ -30,6 +30,13 @@ struct MeshReport {
   uint64_t nonmanifold_vertices = 0;
   // Vertices - edges + faces.
   int64_t euler_characteristic = 0;
+  // What core/operators/bodies.h makes of the components; 0 before it has.
+  uint64_t bodies = 0;               // computed on by themselves
+  uint64_t bridged_components = 0;   // joined with others to one body
+  uint64_t bridges = 0;              // pairs of vertices that join them
+  double bridging_distance = 0;      // how near those have to be
+  uint64_t attached_components = 0;  // that take the nearest part's label
+  uint64_t attached_faces = 0;       // of those
   double area = 0;  // inf or 0 where it leaves the range of a double
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();

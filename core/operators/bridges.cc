@@ -12,18 +12,42 @@ namespace marrow {
 namespace {
 
 // In the unit box: squared distances of large coordinates would overflow.
-Positions UnitPoints(const TriangleMesh& mesh) {
-  Positions points = mesh.positions;
-  const Eigen::RowVector3d low = points.colwise().minCoeff();
-  points.rowwise() -= low;
-  return points / points.maxCoeff();
+struct UnitPoints {
+  Positions points;
+  double unit = 1;  // of the positions in the mesh's
+};
+
+UnitPoints ToUnitBox(const TriangleMesh& mesh) {
+  UnitPoints result{mesh.positions};
+  const Eigen::RowVector3d low = result.points.colwise().minCoeff();
+  result.points.rowwise() -= low;
+  result.unit = result.points.maxCoeff();
+  result.points /= result.unit;
+  return result;
 }
 
-struct Bridge {
-  double distance = std::numeric_limits<double>::infinity();  // squared
-  std::array<uint32_t, 2> ends{};
+double MeanEdge(const TriangleMesh& mesh, const Positions& points) {
+  double sum = 0;
+  for (const Triangle& face : mesh.faces)
+    for (int i = 0; i < 3; ++i)
+      sum += (points.row(face[i]) - points.row(face[(i + 1) % 3])).norm();
+  return sum / (3.0 * mesh.NumFaces());
+}
 
-  friend bool operator<(const Bridge& a, const Bridge& b) {
+double UnitBridgingDistance(const TriangleMesh& mesh, const Positions& points) {
+  constexpr double kLeast = 0.01, kMost = 0.03;
+  const double diagonal =
+      (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+  return std::clamp(MeanEdge(mesh, points), kLeast * diagonal,
+                    kMost * diagonal);
+}
+
+struct Candidate {
+  double distance = std::numeric_limits<double>::infinity();  // squared
+  Bridge ends{};
+
+  bool IsBridge() const { return ends[0] != ends[1]; }
+  friend bool operator<(const Candidate& a, const Candidate& b) {
     return std::tie(a.distance, a.ends) < std::tie(b.distance, b.ends);
   }
 };
@@ -52,7 +76,7 @@ class BodyTree {
 
   // Lowers `best` to the least bridge from the vertex to another body. Equal
   // distances are looked at too: the least pair of vertices wins.
-  void Improve(uint32_t from, Bridge& best) const { Search(0, from, best); }
+  void Improve(uint32_t from, Candidate& best) const { Search(0, from, best); }
 
  private:
   static constexpr uint32_t kLeafSize = 8;
@@ -107,7 +131,7 @@ class BodyTree {
     return Square((node.low - p).cwiseMax(p - node.high).cwiseMax(0.0));
   }
 
-  void Search(uint32_t id, uint32_t from, Bridge& best) const {
+  void Search(uint32_t id, uint32_t from, Candidate& best) const {
     const Node& node = nodes_[id];
     if (node.body == (*body_)[from] || BoxDistance(node, from) > best.distance)
       return;
@@ -123,11 +147,11 @@ class BodyTree {
     Search(far, from, best);
   }
 
-  void Consider(uint32_t from, uint32_t to, Bridge& best) const {
+  void Consider(uint32_t from, uint32_t to, Candidate& best) const {
     if ((*body_)[to] == (*body_)[from]) return;
     const Eigen::RowVector3d apart = points_.row(to) - points_.row(from);
-    best = std::min(
-        best, Bridge{Square(apart), {std::min(from, to), std::max(from, to)}});
+    best = std::min(best, Candidate{Square(apart), {std::min(from, to),
+                                                    std::max(from, to)}});
   }
 
   Positions points_;
@@ -138,45 +162,92 @@ class BodyTree {
 
 // Every body but the largest looks for its nearest neighbour: the largest is
 // found by others, and its many vertices need not search.
-std::vector<Bridge> NearestBodies(const BodyTree& tree,
-                                  const std::vector<uint32_t>& body) {
+std::vector<Candidate> NearestBodies(const BodyTree& tree,
+                                     const std::vector<uint32_t>& body,
+                                     double longest_square) {
   const uint32_t n = static_cast<uint32_t>(body.size());
   std::vector<uint32_t> size(n, 0);
   for (uint32_t b : body) ++size[b];
   const uint32_t largest = static_cast<uint32_t>(
       std::max_element(size.begin(), size.end()) - size.begin());
-  std::vector<Bridge> best(n);
+  std::vector<Candidate> best(n, {longest_square});
   for (uint32_t v = 0; v < n; ++v)
     if (body[v] != largest) tree.Improve(v, best[body[v]]);
   return best;
 }
 
-}  // namespace
-
-std::vector<std::array<uint32_t, 2>> FindBridges(const TriangleMesh& mesh) {
-  const uint32_t n = mesh.NumVertices();
-  DisjointSets sets(n);
-  uint32_t bodies = n;
+uint32_t JoinFaces(const TriangleMesh& mesh, DisjointSets& sets) {
+  uint32_t components = mesh.NumVertices();
   for (const Triangle& face : mesh.faces)
-    bodies -= sets.Union(face[0], face[1]) + sets.Union(face[0], face[2]);
-  std::vector<std::array<uint32_t, 2>> bridges;
-  if (bodies == 1) return bridges;
+    components -= sets.Union(face[0], face[1]) + sets.Union(face[0], face[2]);
+  return components;
+}
 
-  BodyTree tree(UnitPoints(mesh));
+std::vector<uint32_t> Representatives(uint32_t n, DisjointSets& sets) {
   std::vector<uint32_t> body(n);
-  while (bodies > 1) {
-    for (uint32_t v = 0; v < n; ++v) body[v] = sets.Find(v);
+  for (uint32_t v = 0; v < n; ++v) body[v] = sets.Find(v);
+  return body;
+}
+
+// Every round joins each body to its nearest, so there are O(log n).
+std::vector<Bridge> Span(BodyTree& tree, DisjointSets sets, uint32_t n,
+                         uint32_t bodies, double longest_square) {
+  std::vector<Bridge> bridges;
+  for (bool joined = true; joined && bodies > 1;) {
+    joined = false;
+    const std::vector<uint32_t> body = Representatives(n, sets);
     tree.SetBodies(body);
-    std::vector<Bridge> best = NearestBodies(tree, body);
+    std::vector<Candidate> best = NearestBodies(tree, body, longest_square);
     std::sort(best.begin(), best.end());
-    for (const Bridge& bridge : best) {
-      if (bridge.ends[0] == bridge.ends[1]) break;  // nothing was found
-      if (!sets.Union(bridge.ends[0], bridge.ends[1])) continue;
-      bridges.push_back(bridge.ends);
+    for (const Candidate& candidate : best) {
+      if (!candidate.IsBridge()) continue;
+      if (!sets.Union(candidate.ends[0], candidate.ends[1])) continue;
+      bridges.push_back(candidate.ends);
       --bodies;
+      joined = true;
     }
   }
   std::sort(bridges.begin(), bridges.end());
+  return bridges;
+}
+
+}  // namespace
+
+double BridgingDistance(const TriangleMesh& mesh) {
+  const UnitPoints box = ToUnitBox(mesh);
+  return box.unit * UnitBridgingDistance(mesh, box.points);
+}
+
+std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest) {
+  const uint32_t n = mesh.NumVertices();
+  DisjointSets sets(n);
+  const uint32_t components = JoinFaces(mesh, sets);
+  if (components == 1) return {};
+  UnitPoints box = ToUnitBox(mesh);
+  longest /= box.unit;
+  BodyTree tree(std::move(box.points));
+  return Span(tree, sets, n, components, longest * longest);
+}
+
+std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
+  const uint32_t n = mesh.NumVertices();
+  DisjointSets sets(n);
+  const uint32_t components = JoinFaces(mesh, sets);
+  if (components == 1) return {};
+  UnitPoints box = ToUnitBox(mesh);
+  const double near = UnitBridgingDistance(mesh, box.points);
+  BodyTree tree(std::move(box.points));
+  std::vector<Bridge> bridges = Span(tree, sets, n, components,
+                                     std::numeric_limits<double>::infinity());
+  const std::vector<uint32_t> component = Representatives(n, sets);
+  tree.SetBodies(component);
+  for (uint32_t v = 0; v < n; ++v) {
+    Candidate nearest{near * near};
+    tree.Improve(v, nearest);
+    if (nearest.IsBridge()) bridges.push_back(nearest.ends);
+  }
+  std::sort(bridges.begin(), bridges.end());
+  bridges.erase(std::unique(bridges.begin(), bridges.end()), bridges.end());
   return bridges;
 }
 

@@ -1,5 +1,9 @@
 // Bridges between the connected components of a mesh, so that a creature made
 // of several shells is one body to the operator.
+//
+// All functions are deterministic and take about O(n log^2 n) where, as in a
+// canonical mesh, no two vertices share their place. Components are connected
+// through shared vertices. Thread safe.
 #ifndef MARROW_CORE_OPERATORS_BRIDGES_H_
 #define MARROW_CORE_OPERATORS_BRIDGES_H_
 
@@ -11,12 +15,26 @@
 
 namespace marrow {
 
-// Pairs of vertices that join the components into one: a minimum spanning tree
-// of the components by the distance of their nearest vertices (Boruvka's
-// rounds over a k-d tree). Of equally near pairs the least counts. Empty for a
-// mesh in one piece. Deterministic. About O(n log^2 n) where, as in a canonical
-// mesh, no two vertices share their place.
-std::vector<std::array<uint32_t, 2>> FindBridges(const TriangleMesh& mesh);
+// Two vertices of different components, the lesser first.
+using Bridge = std::array<uint32_t, 2>;
+
+// How far apart two shells may be and still conduct as if they touched: the
+// mean edge, but at least a hundredth and at most three hundredths of the
+// diagonal of the box. In units of the positions.
+double BridgingDistance(const TriangleMesh& mesh);
+
+// A minimum spanning tree of the components by the distance of their nearest
+// vertices, without the bridges longer than `longest`, in units of the
+// positions (Boruvka's rounds over a k-d tree). Of equally near pairs the least
+// counts. Ascending; empty for a mesh in one piece.
+std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest);
+
+// What the operator adds: the whole spanning tree, and a bridge from every
+// vertex to the nearest vertex of another component within BridgingDistance().
+// So two shells share as many bridges as the zone where they are near has
+// vertices, and a limb that is a shell of its own conducts as one that has
+// grown on. Ascending.
+std::vector<Bridge> FindBridges(const TriangleMesh& mesh);
 
 }  // namespace marrow
 

@@ -53,6 +53,8 @@ class Competition {
         if (FirstCrossing(e, next.front))
           for (uint32_t f : region_.adjacency().EdgeFaces(e))
             Push(f, next.front);
+      for (const auto& [face, linked] : region_.LinksOf(next.face))
+        Push(linked, next.front);
     }
     if (!cancel.IsCancelled()) ClaimUnreached();
   }
@@ -89,7 +91,8 @@ class Competition {
       if (owner_[f] == kNoIndex) unreached.push_back(f);
     if (unreached.empty()) return;
     const std::vector<uint32_t> piece = ConnectedPieces(
-        region_.adjacency(), std::vector<uint32_t>(region_.NumFaces(), 0));
+        region_.adjacency(), std::vector<uint32_t>(region_.NumFaces(), 0),
+        region_.links());
     std::map<uint32_t, std::vector<uint32_t>> faces_of_piece;
     for (uint32_t f : unreached) faces_of_piece[piece[f]].push_back(f);
     for (const auto& [id, faces] : faces_of_piece) {

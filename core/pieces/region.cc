@@ -41,11 +41,24 @@ Adjacency LocalAdjacency(uint32_t num_vertices,
   return Adjacency(topology);
 }
 
+std::vector<std::array<uint32_t, 2>> LocalLinks(
+    const std::vector<uint32_t>& faces, const FaceLinks& links) {
+  std::vector<std::array<uint32_t, 2>> local;
+  if (links.empty()) return local;
+  for (uint32_t f = 0; f < faces.size(); ++f)
+    for (uint32_t there : links.Of(faces[f])) {
+      const auto it = std::lower_bound(faces.begin(), faces.end(), there);
+      if (it != faces.end() && *it == there)
+        local.push_back({f, static_cast<uint32_t>(it - faces.begin())});
+    }
+  return local;
+}
+
 }  // namespace
 
 Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
                const std::vector<double>& face_areas,
-               const std::vector<uint32_t>& faces)
+               const std::vector<uint32_t>& faces, const FaceLinks& links)
     : faces_(faces),
       vertices_(VerticesOf(mesh, faces)),
       triangles_(LocalTriangles(mesh, faces, vertices_)),
@@ -70,6 +83,16 @@ Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
   }
   for (uint32_t& loop : loop_)
     if (loop != kNoIndex) loop = loops.Find(loop);
+  links_ = LocalLinks(faces_, links);
+}
+
+std::span<const std::array<uint32_t, 2>> Region::LinksOf(uint32_t f) const {
+  if (links_.empty()) return {};
+  const auto begin = std::lower_bound(links_.begin(), links_.end(),
+                                      std::array<uint32_t, 2>{f, 0});
+  auto end = begin;
+  while (end != links_.end() && (*end)[0] == f) ++end;
+  return {begin, end};
 }
 
 std::vector<uint32_t> Region::BoundaryLoop(uint32_t v) const {
@@ -87,7 +110,9 @@ std::vector<uint32_t> Region::AllFaces() const {
 }
 
 std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
-                                      const std::vector<uint32_t>& labels) {
+                                      const std::vector<uint32_t>& labels,
+                                      std::span<const std::array<uint32_t, 2>>
+                                          links) {
   DisjointSets sets(adjacency.NumFaces());
   std::vector<std::pair<uint32_t, uint32_t>> around;  // label, face
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
@@ -98,6 +123,8 @@ std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
       if (around[i].first == around[i - 1].first)
         sets.Union(around[i].second, around[i - 1].second);
   }
+  for (const auto& [f, g] : links)
+    if (labels[f] == labels[g]) sets.Union(f, g);
   std::vector<uint32_t> piece(adjacency.NumFaces());
   uint32_t count = 0;
   for (uint32_t f = 0; f < piece.size(); ++f)

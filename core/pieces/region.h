@@ -3,13 +3,15 @@
 #ifndef MARROW_CORE_PIECES_REGION_H_
 #define MARROW_CORE_PIECES_REGION_H_
 
+#include <array>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/diffusion/diffusion_map.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/pieces/face_links.h"
 
 namespace marrow {
 
@@ -17,10 +19,11 @@ namespace marrow {
 // mesh's order, so ties broken by local id are broken by canonical id.
 class Region {
  public:
-  // `faces` ascending; areas are shares of the mesh's area.
+  // `faces` ascending; areas are shares of the mesh's area. Of the links, those
+  // with both ends in the region count.
   Region(const TriangleMesh& mesh, const Adjacency& adjacency,
          const std::vector<double>& face_areas,
-         const std::vector<uint32_t>& faces);
+         const std::vector<uint32_t>& faces, const FaceLinks& links = {});
 
   uint32_t NumFaces() const { return local_.NumFaces(); }
   uint32_t NumVertices() const {
@@ -32,6 +35,12 @@ class Region {
   const std::vector<double>& areas() const { return areas_; }
   double area() const { return area_; }
   const Adjacency& adjacency() const { return local_; }
+
+  // Pairs of local faces of different shells that count as neighbours, both
+  // ways, ascending.
+  const std::vector<std::array<uint32_t, 2>>& links() const { return links_; }
+  // The local faces linked to f, as the second entries of pairs.
+  std::span<const std::array<uint32_t, 2>> LinksOf(uint32_t f) const;
 
   // The local vertices of the boundary loop that v lies on, ascending; v alone
   // where it lies on none. The boundary is where the region meets the rest of
@@ -48,15 +57,18 @@ class Region {
   std::vector<double> areas_;
   double area_ = 0;
   Adjacency local_;
+  std::vector<std::array<uint32_t, 2>> links_;
   // Local vertex -> its loop's least vertex; kNoIndex off the boundary.
   std::vector<uint32_t> loop_;
 };
 
 // Face -> number of its connected piece among faces of equal label. Faces are
-// connected through edges. Pieces are numbered by their least face. Linear in
+// connected through edges and links. Pieces are numbered by their least face. Linear in
 // the size of the mesh but for sorting at edges of many faces.
 std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
-                                      const std::vector<uint32_t>& labels);
+                                      const std::vector<uint32_t>& labels,
+                                      std::span<const std::array<uint32_t, 2>>
+                                          links = {});
 
 }  // namespace marrow
 

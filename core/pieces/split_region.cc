@@ -115,7 +115,7 @@ struct LabelPieces {
 LabelPieces FindLabelPieces(const Region& region,
                             const std::vector<uint32_t>& labels) {
   LabelPieces result;
-  result.piece = ConnectedPieces(region.adjacency(), labels);
+  result.piece = ConnectedPieces(region.adjacency(), labels, region.links());
   for (uint32_t f = 0; f < labels.size(); ++f) {
     if (result.piece[f] == result.label.size()) {
       result.label.push_back(labels[f]);
@@ -127,31 +127,48 @@ LabelPieces FindLabelPieces(const Region& region,
 }
 
 // For each piece, the label with which it shares the longest boundary, counted
-// in edges; its own where it touches no other. Only pieces that are the largest
-// of their label count as neighbours, so that every move ends in one.
-std::vector<uint32_t> LongestNeighbour(const Region& region,
-                                       const LabelPieces& pieces,
-                                       const std::vector<bool>& is_main) {
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared;
-  std::vector<uint32_t> around;
-  for (uint32_t e = 0; e < region.adjacency().NumEdges(); ++e) {
-    around.clear();
-    for (uint32_t f : region.adjacency().EdgeFaces(e))
-      around.push_back(pieces.piece[f]);
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (uint32_t a : around)
-      for (uint32_t b : around)
-        if (!is_main[a] && is_main[b]) ++shared[{a, pieces.label[b]}];
-  }
-  std::vector<uint32_t> result = pieces.label, longest(result.size(), 0);
-  for (const auto& [key, count] : shared)
-    if (count > longest[key.first]) {
-      longest[key.first] = count;
-      result[key.first] = key.second;
+// in edges and links; its own where it touches no other. Only pieces that are
+// the largest of their label count as neighbours, so that every move ends in
+// one.
+class LongestNeighbour {
+ public:
+  LongestNeighbour(const LabelPieces& pieces, const std::vector<bool>& is_main)
+      : pieces_(pieces), is_main_(is_main) {}
+
+  // The faces of one edge or link. Strays and main pieces are told apart
+  // first: where a thousand pages meet, there are few main pieces.
+  void Meet(std::span<const uint32_t> faces) {
+    strays_.clear();
+    mains_.clear();
+    for (uint32_t f : faces) {
+      const uint32_t piece = pieces_.piece[f];
+      (is_main_[piece] ? mains_ : strays_).push_back(piece);
     }
-  return result;
-}
+    if (strays_.empty() || mains_.empty()) return;
+    for (std::vector<uint32_t>* list : {&strays_, &mains_}) {
+      std::sort(list->begin(), list->end());
+      list->erase(std::unique(list->begin(), list->end()), list->end());
+    }
+    for (uint32_t stray : strays_)
+      for (uint32_t main : mains_) ++shared_[{stray, pieces_.label[main]}];
+  }
+
+  std::vector<uint32_t> Labels() const {
+    std::vector<uint32_t> result = pieces_.label, longest(result.size(), 0);
+    for (const auto& [key, count] : shared_)
+      if (count > longest[key.first]) {
+        longest[key.first] = count;
+        result[key.first] = key.second;
+      }
+    return result;
+  }
+
+ private:
+  const LabelPieces& pieces_;
+  const std::vector<bool>& is_main_;
+  std::vector<uint32_t> strays_, mains_;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;
+};
 
 // Leaves every segment in one piece where the region is in one.
 void JoinStrayPieces(const Region& region, size_t num_labels,
@@ -167,7 +184,11 @@ void JoinStrayPieces(const Region& region, size_t num_labels,
     std::vector<bool> is_main(pieces.label.size(), false);
     for (uint32_t p : main)
       if (p != kNoIndex) is_main[p] = true;
-    const auto target = LongestNeighbour(region, pieces, is_main);
+    LongestNeighbour neighbours(pieces, is_main);
+    for (uint32_t e = 0; e < region.adjacency().NumEdges(); ++e)
+      neighbours.Meet(region.adjacency().EdgeFaces(e));
+    for (const auto& link : region.links()) neighbours.Meet(link);
+    const std::vector<uint32_t> target = neighbours.Labels();
     bool moved = false;
     for (uint32_t f = 0; f < labels.size(); ++f) {
       moved |= labels[f] != target[pieces.piece[f]];
@@ -206,7 +227,7 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
                                         const CancelToken& cancel) {
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const Region region(context.mesh, context.adjacency, context.face_areas,
-                      faces);
+                      faces, context.links);
   if (faces.size() < kMinRegionFaces || region.area() <= 0 ||
       context.pairs.NumPairs() < 2)
     return Unsplit(StopReason::kTooSmall);
@@ -242,7 +263,7 @@ std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
                                         const std::vector<uint32_t>& faces,
                                         const SplitOptions& options) {
   const Region region(context.mesh, context.adjacency, context.face_areas,
-                      faces);
+                      faces, context.links);
   if (context.pairs.NumPairs() < 2 || region.area() <= 0)
     return region.mesh_vertices();
   const double t = TimeScale(context.pairs, region.area());

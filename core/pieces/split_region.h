@@ -12,6 +12,8 @@
 //  - Faces of equal key leave the heap by face id, then front id.
 //  - A front that is starved (it holds no face) is dropped, and so is its
 //    medial structure.
+//  - Fronts cross from shell to shell over face links, and a segment that
+//    links hold together is in one piece.
 //  - Faces that no front reaches (another connected piece of the region) go,
 //    a piece as a whole, to the front that is nearest by Eq. 11.
 //  - A segment in several pieces keeps the largest; the others go to the
@@ -27,6 +29,7 @@
 #include "core/base/cancel_token.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/pieces/face_links.h"
 #include "core/spectrum/eigen_pairs.h"
 
 namespace marrow {
@@ -58,6 +61,8 @@ struct SplitContext {
   const Adjacency& adjacency;
   const EigenPairs& pairs;
   const std::vector<double>& face_areas;  // in units of the mesh's whole area
+  // Where the fronts step from shell to shell, as the operator does.
+  FaceLinks links = {};
 };
 
 struct Piece {

@@ -1,12 +1,15 @@
 #include "core/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <utility>
 
 #include "core/base/status_macros.h"
+#include "core/hierarchy/forest.h"
 #include "core/hierarchy/tree_builder.h"
 #include "core/mesh/adjacency.h"
+#include "core/operators/bodies.h"
 #include "core/operators/laplacian.h"
 
 namespace marrow {
@@ -72,9 +75,21 @@ std::vector<uint32_t> PointLabels(const CanonicalMesh& canonical,
 // The mesh with what every level needs beside it.
 struct Prepared {
   const CanonicalMesh& canonical;
+  const Bodies& bodies;
   Adjacency adjacency;
   std::vector<double> areas;
+  std::vector<Bridge> bridges;
 };
+
+Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies) {
+  Prepared prepared{canonical, bodies, Adjacency(canonical.mesh),
+                    FaceAreaShares(canonical.mesh),
+                    {}};
+  for (const Body& body : bodies.bodies)
+    for (const auto& [u, v] : body.bridges)
+      prepared.bridges.push_back({body.vertices[u], body.vertices[v]});
+  return prepared;
+}
 
 absl::Status EmitLevel(const Prepared& prepared, const SegmentTree& tree,
                        uint32_t level, Reporter& reporter, Sink& sink) {
@@ -86,22 +101,115 @@ absl::Status EmitLevel(const Prepared& prepared, const SegmentTree& tree,
   const std::vector<uint32_t> point_labels = PointLabels(
       prepared.canonical, prepared.adjacency, prepared.areas, face_segment);
   const Skeleton skeleton =
-      BuildSkeleton(prepared.canonical.mesh, prepared.adjacency, tree, level);
+      BuildSkeleton(prepared.canonical.mesh, prepared.adjacency, tree, level,
+                    prepared.bridges);
   return reporter.Took(
       sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
 }
 
-absl::Status SplitLevels(const Prepared& prepared, const EigenPairs& pairs,
-                         const SegmentationOptions& options,
-                         const CancelToken& cancel, Reporter& reporter,
-                         Sink& sink) {
-  TreeBuilder builder(
-      {prepared.canonical.mesh, prepared.adjacency, pairs, prepared.areas},
-      options.split, prepared.canonical.report.area);
+// Where the work on a body stands.
+class BodyTree {
+ public:
+  BodyTree(const Body& body, std::shared_ptr<const EigenPairs> pairs,
+           const SplitOptions& options)
+      : share_(body.share),
+        adjacency_(body.canonical->mesh),
+        areas_(FaceAreaShares(body.canonical->mesh)),
+        pairs_(std::move(pairs)),
+        builder_({body.canonical->mesh, adjacency_, *pairs_, areas_,
+                  FaceLinks(adjacency_, body.bridges)},
+                 options, body.canonical->report.area) {}
+  BodyTree(const BodyTree&) = delete;
+  BodyTree& operator=(const BodyTree&) = delete;
+
+  // Whether it became deeper. Not tried again once it did not.
+  absl::StatusOr<bool> Deepen(const CancelToken& cancel,
+                              const std::function<void(double)>& progress) {
+    if (done_) return false;
+    MARROW_ASSIGN_OR_RETURN(const bool deeper,
+                            builder_.Deepen(cancel, progress));
+    done_ = !deeper;
+    return deeper;
+  }
+  void StopAtDepth() { builder_.StopAtDepth(); }
+
+  double share() const { return share_; }
+  const SegmentTree& tree() const { return builder_.tree(); }
+
+ private:
+  const double share_;
+  const Adjacency adjacency_;
+  const std::vector<double> areas_;
+  const std::shared_ptr<const EigenPairs> pairs_;
+  TreeBuilder builder_;
+  bool done_ = false;
+};
+
+// The tree of the whole mesh, a level at a time.
+class Forest {
+ public:
+  Forest(const Prepared& prepared,
+         const std::vector<std::shared_ptr<const EigenPairs>>& pairs,
+         const SplitOptions& options)
+      : prepared_(prepared) {
+    for (size_t b = 0; b < pairs.size(); ++b)
+      bodies_.push_back(std::make_unique<BodyTree>(prepared.bodies.bodies[b],
+                                                   pairs[b], options));
+    Plant();
+  }
+
+  // As TreeBuilder::Deepen(); the first split of several bodies is into them.
+  absl::StatusOr<bool> Deepen(const CancelToken& cancel,
+                              const std::function<void(double)>& progress) {
+    if (bodies_.size() > 1 && !std::exchange(apart_, true)) return true;
+    bool any = false;
+    double before = 0;
+    for (const auto& body : bodies_) {
+      MARROW_ASSIGN_OR_RETURN(
+          const bool deeper, body->Deepen(cancel, [&](double share) {
+            progress(std::min(1.0, before + body->share() * share));
+          }));
+      any |= deeper;
+      before += body->share();
+    }
+    Plant();
+    return any;
+  }
+
+  void StopAtDepth() {
+    for (const auto& body : bodies_) body->StopAtDepth();
+    Plant();
+  }
+
+  const SegmentTree& tree() const {
+    return prepared_.bodies.IsWhole() ? bodies_[0]->tree() : tree_;
+  }
+
+ private:
+  void Plant() {
+    if (prepared_.bodies.IsWhole()) return;
+    std::vector<const SegmentTree*> trees;
+    for (const auto& body : bodies_) trees.push_back(&body->tree());
+    tree_ = PlantForest(prepared_.canonical, prepared_.areas, prepared_.bodies,
+                        trees);
+  }
+
+  const Prepared& prepared_;
+  std::vector<std::unique_ptr<BodyTree>> bodies_;
+  bool apart_ = false;
+  SegmentTree tree_;
+};
+
+absl::Status SplitLevels(
+    const Prepared& prepared,
+    const std::vector<std::shared_ptr<const EigenPairs>>& pairs,
+    const SegmentationOptions& options, const CancelToken& cancel,
+    Reporter& reporter, Sink& sink) {
+  Forest forest(prepared, pairs, options.split);
   for (uint32_t level = 1; level <= options.levels; ++level) {
     absl::Status reported;
     MARROW_ASSIGN_OR_RETURN(
-        const bool deeper, builder.Deepen(cancel, [&](double share) {
+        const bool deeper, forest.Deepen(cancel, [&](double share) {
           reported.Update(reporter.Progress(
               Stage::kSegments, kSpectrumDone + (1 - kSpectrumDone) *
                                                     (level - 1 + share) /
@@ -110,21 +218,54 @@ absl::Status SplitLevels(const Prepared& prepared, const EigenPairs& pairs,
     MARROW_RETURN_IF_ERROR(reported);
     if (!deeper && level > 1) break;
     MARROW_RETURN_IF_ERROR(
-        EmitLevel(prepared, builder.tree(), level, reporter, sink));
+        EmitLevel(prepared, forest.tree(), level, reporter, sink));
     if (!deeper) break;
   }
-  builder.StopAtDepth();
+  forest.StopAtDepth();
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSegments, 1));
-  return reporter.Took(sink.OnTree(builder.tree()));
+  return reporter.Took(sink.OnTree(forest.tree()));
+}
+
+// The pairs of every body, in their order.
+absl::StatusOr<std::vector<std::shared_ptr<const EigenPairs>>> PullPairs(
+    const Bodies& bodies, uint32_t count, EigenPairSource& source,
+    const CancelToken& cancel, Reporter& reporter) {
+  std::vector<std::shared_ptr<const EigenPairs>> pairs;
+  double before = 0;
+  for (const Body& body : bodies.bodies) {
+    // The solver looks at the token alone, so a sink that has had enough is
+    // heard when the solver is done, unless its owner cancels too.
+    MARROW_ASSIGN_OR_RETURN(
+        std::shared_ptr<const EigenPairs> own,
+        source.Get(*body.canonical, PairsOfBody(body, count), cancel,
+                   [&](double share) {
+                     const double done = before + body.share * share;
+                     (void)reporter.Progress(
+                         Stage::kSpectrum,
+                         kMeshDone + (kSpectrumDone - kMeshDone) * done);
+                   }));
+    pairs.push_back(std::move(own));
+    before += body.share;
+  }
+  return pairs;
+}
+
+// DecodeDraco, then Canonicalize.
+absl::StatusOr<CanonicalMesh> LoadCanonical(std::string_view draco_bytes,
+                                            const MeshLimits& limits) {
+  MARROW_ASSIGN_OR_RETURN(const DecodedMesh decoded,
+                          DecodeDraco(draco_bytes, limits));
+  return Canonicalize(decoded);
 }
 
 }  // namespace
 
 absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
                                        const MeshLimits& limits) {
-  MARROW_ASSIGN_OR_RETURN(const DecodedMesh decoded,
-                          DecodeDraco(draco_bytes, limits));
-  return Canonicalize(decoded);
+  MARROW_ASSIGN_OR_RETURN(CanonicalMesh canonical,
+                          LoadCanonical(draco_bytes, limits));
+  (void)FindBodies(canonical);
+  return canonical;
 }
 
 std::vector<uint32_t> PointOfVertex(const CanonicalMesh& mesh) {
@@ -142,22 +283,16 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(ValidateOptions(options));
   Reporter reporter(sink, cancel);
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kMesh, 0));
-  MARROW_ASSIGN_OR_RETURN(const CanonicalMesh canonical,
-                          LoadMesh(draco_bytes, limits));
+  MARROW_ASSIGN_OR_RETURN(CanonicalMesh canonical,
+                          LoadCanonical(draco_bytes, limits));
+  const Bodies bodies = FindBodies(canonical);
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
-
-  // The solver looks at the token alone, so a sink that has had enough is
-  // heard when the solver is done, unless its owner cancels too.
   MARROW_ASSIGN_OR_RETURN(
-      const std::shared_ptr<const EigenPairs> eigen_pairs,
-      pairs.Get(canonical, options.eigen_pairs, cancel, [&](double share) {
-        (void)reporter.Progress(
-            Stage::kSpectrum, kMeshDone + (kSpectrumDone - kMeshDone) * share);
-      }));
-  const Prepared prepared{canonical, Adjacency(canonical.mesh),
-                          FaceAreaShares(canonical.mesh)};
-  return SplitLevels(prepared, *eigen_pairs, options, cancel, reporter, sink);
+      const auto eigen_pairs,
+      PullPairs(bodies, options.eigen_pairs, pairs, cancel, reporter));
+  const Prepared prepared = Prepare(canonical, bodies);
+  return SplitLevels(prepared, eigen_pairs, options, cancel, reporter, sink);
 }
 
 }  // namespace marrow

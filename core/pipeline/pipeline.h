@@ -48,7 +48,7 @@ class Sink {
   virtual bool OnTree(const SegmentTree& tree) = 0;
 };
 
-// DecodeDraco, then Canonicalize.
+// DecodeDraco, Canonicalize, then FindBodies for the report.
 absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
                                        const MeshLimits& limits);
 

@@ -67,14 +67,48 @@ Boundary LongestRun(const TriangleMesh& mesh, const Adjacency& adjacency,
   return longest;
 }
 
+using Bridges = std::span<const std::array<uint32_t, 2>>;
+using BoundaryMap = std::map<std::pair<uint32_t, uint32_t>, Boundary>;
+
+// Where segments of different shells are near: in the middle of the bridges,
+// and about as long as the rim on which those stand, whose every vertex has
+// one.
+BoundaryMap BridgedBoundaries(const TriangleMesh& mesh,
+                              const Adjacency& adjacency,
+                              const std::vector<uint32_t>& place,
+                              Bridges bridges) {
+  BoundaryMap found;
+  for (const auto& [u, v] : bridges) {
+    const uint32_t f = adjacency.VertexFaces(u).front();
+    const auto [a, b] =
+        std::minmax(place[f], place[adjacency.VertexFaces(v).front()]);
+    const auto [p, q] = adjacency.EdgeVertices(adjacency.FaceEdges(f)[0]);
+    const double rim = 0.5 * (mesh.Position(p) - mesh.Position(q)).norm();
+    if (a == b || rim == 0) continue;
+    Boundary& boundary = found[{a, b}];
+    boundary.a = a;
+    boundary.b = b;
+    boundary.length += rim;
+    boundary.centre += 0.5 * rim * (mesh.Position(u) + mesh.Position(v));
+  }
+  for (auto& [places, boundary] : found) boundary.centre /= boundary.length;
+  return found;
+}
+
 std::vector<Boundary> FindBoundaries(const TriangleMesh& mesh,
                                      const Adjacency& adjacency,
-                                     const std::vector<uint32_t>& place) {
+                                     const std::vector<uint32_t>& place,
+                                     Bridges bridges) {
   std::vector<Boundary> boundaries;
+  BoundaryMap bridged = BridgedBoundaries(mesh, adjacency, place, bridges);
   for (const auto& [places, edges] : SharedEdges(adjacency, place)) {
     Boundary run = LongestRun(mesh, adjacency, places, edges);
-    if (run.length > 0) boundaries.push_back(run);
+    if (run.length > 0) {
+      bridged.erase(places);
+      boundaries.push_back(run);
+    }
   }
+  for (const auto& [places, boundary] : bridged) boundaries.push_back(boundary);
   std::sort(boundaries.begin(), boundaries.end(),
             [](const Boundary& x, const Boundary& y) {
               return std::tie(y.length, x.a, x.b) <
@@ -224,7 +258,8 @@ Skeleton LayOut(const std::vector<Reached>& order,
 }  // namespace
 
 Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
-                       const SegmentTree& tree, uint32_t level) {
+                       const SegmentTree& tree, uint32_t level,
+                       Bridges bridges) {
   const std::vector<uint32_t> segments = tree.SegmentsAtLevel(level);
   std::vector<uint32_t> place(mesh.NumFaces());
   std::vector<Eigen::Vector3d> centres;
@@ -234,7 +269,7 @@ Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
   }
   const uint32_t root = RootPlace(adjacency, tree, place, segments.size());
   const std::vector<Boundary> boundaries =
-      FindBoundaries(mesh, adjacency, place);
+      FindBoundaries(mesh, adjacency, place, bridges);
   DisjointSets joined(static_cast<uint32_t>(segments.size()));
   std::vector<Link> links = StrongLinks(boundaries, joined);
   JoinBodies(centres, root, joined, links);

@@ -4,7 +4,9 @@
 #define MARROW_CORE_SKELETON_SKELETON_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/hierarchy/segment_tree.h"
@@ -29,10 +31,13 @@ struct Skeleton {
 
 // The root is the segment that holds the root node's medial structure, the most
 // central points of the mesh. Every other segment hangs on its shortest way to
-// the root through centres and boundaries, mere contacts left out. Separate
-// components hang on the nearest centre, without an articulation.
+// the root through centres and boundaries, mere contacts left out. Where two
+// segments share no edge, the bridges between them (pairs of vertices that are
+// near, operators/bridges.h) are their boundary. Segments without either hang
+// on the nearest centre, without an articulation.
 Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
-                       const SegmentTree& tree, uint32_t level);
+                       const SegmentTree& tree, uint32_t level,
+                       std::span<const std::array<uint32_t, 2>> bridges = {});
 
 }  // namespace marrow
 

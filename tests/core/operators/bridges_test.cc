@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -14,7 +15,9 @@
 namespace marrow {
 namespace {
 
-using Bridges = std::vector<std::array<uint32_t, 2>>;
+using Bridges = std::vector<Bridge>;
+
+constexpr double kAnyLength = std::numeric_limits<double>::infinity();
 
 DisjointSets ComponentsOf(const TriangleMesh& mesh) {
   DisjointSets sets(mesh.NumVertices());
@@ -69,7 +72,7 @@ TEST(BridgesTest, AreAMinimumSpanningTreeOfRandomClouds) {
     std::mt19937 random(seed);
     const TriangleMesh mesh =
         Cloud(2 + 2 * seed, random, [&] { return random() * 0x1p-32; });
-    EXPECT_EQ(FindBridges(mesh), BruteForce(mesh)) << seed;
+    EXPECT_EQ(SpanningBridges(mesh, kAnyLength), BruteForce(mesh)) << seed;
   }
 }
 
@@ -81,8 +84,47 @@ TEST(BridgesTest, BreakTiesByTheLeastVertices) {
     // A power of two as extent keeps scaled distances exact.
     mesh.positions.row(0).setZero();
     mesh.positions.row(1).setConstant(8);
-    EXPECT_EQ(FindBridges(mesh), BruteForce(mesh)) << seed;
+    EXPECT_EQ(SpanningBridges(mesh, kAnyLength), BruteForce(mesh)) << seed;
   }
+}
+
+TEST(BridgesTest, StopAtTheLongest) {
+  for (uint32_t seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    const TriangleMesh mesh =
+        Cloud(40, random, [&] { return random() * 0x1p-32; });
+    Bridges expected = SpanningBridges(mesh, kAnyLength);
+    const size_t all = expected.size();
+    constexpr double kLongest = 0.15;
+    std::erase_if(expected, [&](const Bridge& b) {
+      return (mesh.Position(b[0]) - mesh.Position(b[1])).norm() > kLongest;
+    });
+    EXPECT_LT(expected.size(), all);
+    EXPECT_EQ(SpanningBridges(mesh, kLongest), expected) << seed;
+  }
+}
+
+TEST(BridgesTest, EveryVertexOfANearZoneHasOne) {
+  // Two grids, one edge of each half a hundredth from the other's.
+  TriangleMesh mesh = Apart(Grid(8, 6), Grid(8, 6));
+  const uint32_t n = mesh.NumVertices() / 2;
+  for (uint32_t v = n; v < 2 * n; ++v) mesh.positions(v, 0) -= 0.9;
+  for (const auto& [u, v] : FindBridges(mesh)) {
+    EXPECT_LT(u, n);
+    EXPECT_EQ(v, u + n - 8);
+    EXPECT_EQ(mesh.positions(u, 0), 8);
+  }
+  EXPECT_EQ(FindBridges(mesh).size(), 7u);
+}
+
+TEST(BridgesTest, TheDistanceIsTheMeanEdgeWithinItsBounds) {
+  const double diagonal = std::sqrt(200.0);
+  EXPECT_NEAR(BridgingDistance(Grid(10, 10)), 0.03 * diagonal, 1e-12);
+  const double fine = std::sqrt(2 * 400.0 * 400.0);
+  EXPECT_NEAR(BridgingDistance(Grid(400, 400)), 0.01 * fine, 1e-9);
+  const TriangleMesh grid = Grid(60, 60);
+  const double mean = (2 + std::sqrt(2.0)) / 3;
+  EXPECT_NEAR(BridgingDistance(Scaled(grid, 1e30)), mean * 1e30, 1e20);
 }
 
 TEST(BridgesTest, JoinBodiesAtAnyScale) {
@@ -113,7 +155,7 @@ TEST(BridgesTest, ManyBodiesStayQuick) {
   const TriangleMesh mesh =
       Cloud(20'000, random, [&] { return random() * 0x1p-32; });
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(FindBridges(mesh).size(), 19'999u);
+  EXPECT_EQ(SpanningBridges(mesh, kAnyLength).size(), 19'999u);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 

@@ -4,27 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "client/samples/samples.h"
+#include "tests/testing/creature_mesh.h"
 #include "tests/testing/invariants.h"
 #include "tests/testing/run.h"
 #include "tests/testing/shapes.h"
 
 namespace marrow {
 namespace {
-
-TriangleMesh Creature(const std::string& name) {
-  const Sample sample = MakeSample(name, "", kMinSampleFaces).value();
-  TriangleMesh mesh;
-  mesh.positions.resize(sample.mesh.NumVertices(), 3);
-  for (size_t v = 0; v < sample.mesh.NumVertices(); ++v)
-    for (int i = 0; i < 3; ++i)
-      mesh.positions(v, i) = sample.mesh.positions[v][i];
-  for (size_t f = 0; f < sample.mesh.NumFaces(); ++f) {
-    const auto face = sample.mesh.Face(f);
-    mesh.faces.push_back({face[0], face[1], face[2]});
-  }
-  return mesh;
-}
 
 SegmentationOptions TwoLevels() {
   SegmentationOptions options;
@@ -36,7 +22,7 @@ SegmentationOptions TwoLevels() {
 class CreatureTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
-  const TriangleMesh mesh = Creature(GetParam());
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
   const RecordingSink run = RunOn(mesh, TwoLevels());
   ASSERT_EQ(run.levels.size(), 2u);
   const Adjacency adjacency(run.mesh.mesh);
@@ -56,7 +42,7 @@ TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
 }
 
 TEST_P(CreatureTest, RotationAndScaleKeepThePartition) {
-  const TriangleMesh mesh = Creature(GetParam());
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
   const RecordingSink run = RunOn(mesh, TwoLevels());
   const RecordingSink other =
       RunOn(Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), TwoLevels());

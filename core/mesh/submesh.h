@@ -1,0 +1,27 @@
+// Some faces of a canonical mesh as a canonical mesh of their own.
+#ifndef MARROW_CORE_MESH_SUBMESH_H_
+#define MARROW_CORE_MESH_SUBMESH_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh/canonical_mesh.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+struct Submesh {
+  // What Canonicalize() gives for a payload of these faces alone, to the last
+  // bit of the digest; the maps are empty, and of the report there is what
+  // ReportOn() finds.
+  CanonicalMesh canonical;
+  std::vector<uint32_t> vertices;  // own vertex -> the mesh's, ascending
+};
+
+// `faces` ascending, not empty. `mesh` is canonical. O(n log n). Thread safe.
+Submesh ExtractFaces(const TriangleMesh& mesh,
+                     const std::vector<uint32_t>& faces);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_MESH_SUBMESH_H_

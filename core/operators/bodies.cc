@@ -1,0 +1,297 @@
+#include "core/operators/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nanoflann.hpp>
+#include <numeric>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+#include "core/mesh/submesh.h"
+#include "core/operators/laplacian.h"
+
+namespace marrow {
+namespace {
+
+using Groups = std::vector<std::vector<uint32_t>>;
+
+// Members of 0 .. n-1 by their group. Groups are in the order of their least
+// members, members ascending.
+Groups GroupBy(uint32_t n, DisjointSets& sets) {
+  std::vector<uint32_t> place(n, kNoIndex);
+  Groups groups;
+  for (uint32_t i = 0; i < n; ++i) {
+    uint32_t& at = place[sets.Find(i)];
+    if (at == kNoIndex) {
+      at = static_cast<uint32_t>(groups.size());
+      groups.emplace_back();
+    }
+    groups[at].push_back(i);
+  }
+  return groups;
+}
+
+// Faces by component.
+Groups Components(const TriangleMesh& mesh) {
+  DisjointSets vertices(mesh.NumVertices());
+  for (const Triangle& face : mesh.faces) {
+    vertices.Union(face[0], face[1]);
+    vertices.Union(face[0], face[2]);
+  }
+  std::vector<uint32_t> place(mesh.NumVertices(), kNoIndex);
+  Groups components;
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    uint32_t& at = place[vertices.Find(mesh.faces[f][0])];
+    if (at == kNoIndex) {
+      at = static_cast<uint32_t>(components.size());
+      components.emplace_back();
+    }
+    components[at].push_back(f);
+  }
+  return components;
+}
+
+double AreaOf(const std::vector<uint32_t>& faces,
+              const std::vector<double>& areas) {
+  double sum = 0;
+  for (uint32_t f : faces) sum += areas[f];
+  return sum;
+}
+
+// Parts sorted out of the mesh, each a set of faces with its area.
+struct Part {
+  std::vector<uint32_t> faces;  // ascending
+  double share = 0;
+  uint32_t components = 1;
+};
+
+void LargestFirst(std::vector<Part>& parts) {
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return a.share != b.share ? a.share > b.share
+                              : a.faces.front() < b.faces.front();
+  });
+}
+
+// Takes the parts from place `first` on out of `from`.
+std::vector<Part> Split(std::vector<Part>& from, size_t first) {
+  std::vector<Part> rest(std::make_move_iterator(from.begin() + first),
+                         std::make_move_iterator(from.end()));
+  from.resize(first);
+  return rest;
+}
+
+// Rule 1. REQUIRES: largest first. The number of components of weight.
+size_t CountOfWeight(const std::vector<Part>& parts) {
+  auto count_from = [&](double share) {
+    size_t count = 1;
+    while (count < parts.size() && parts[count].share >= share) ++count;
+    return count;
+  };
+  const size_t heavy = count_from(kWeight);
+  double sum = 0;
+  for (size_t i = 0; i < heavy; ++i) sum += parts[i].share;
+  return sum >= kMainShare ? heavy : count_from(kLightWeight);
+}
+
+std::vector<uint32_t> AllFacesOf(const std::vector<Part>& parts) {
+  std::vector<uint32_t> faces;
+  for (const Part& part : parts)
+    faces.insert(faces.end(), part.faces.begin(), part.faces.end());
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+// Rule 2: joins the parts that bridges within the distance connect.
+std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
+                           double& distance) {
+  const Submesh main = ExtractFaces(mesh, AllFacesOf(parts));
+  distance = BridgingDistance(main.canonical.mesh);
+  std::vector<uint32_t> part_of_vertex(mesh.NumVertices(), kNoIndex);
+  for (uint32_t p = 0; p < parts.size(); ++p)
+    for (uint32_t f : parts[p].faces)
+      for (uint32_t v : mesh.faces[f]) part_of_vertex[v] = p;
+  DisjointSets sets(static_cast<uint32_t>(parts.size()));
+  for (const auto& [u, v] : SpanningBridges(main.canonical.mesh, distance))
+    sets.Union(part_of_vertex[main.vertices[u]],
+               part_of_vertex[main.vertices[v]]);
+  std::vector<Part> joined;
+  for (const auto& group :
+       GroupBy(static_cast<uint32_t>(parts.size()), sets)) {
+    Part& body = joined.emplace_back(std::move(parts[group[0]]));
+    for (size_t i = 1; i < group.size(); ++i) {
+      const Part& part = parts[group[i]];
+      body.faces.insert(body.faces.end(), part.faces.begin(), part.faces.end());
+      body.share += part.share;
+      ++body.components;
+    }
+    std::sort(body.faces.begin(), body.faces.end());
+  }
+  return joined;
+}
+
+// Rule 3. REQUIRES: largest first.
+size_t CountBodies(const std::vector<Part>& parts) {
+  size_t count = 1;
+  while (count < parts.size() && count < kMaxBodies &&
+         parts[count].share >= kBodyShare * parts[0].share)
+    ++count;
+  return count;
+}
+
+// Finds the vertex of the bodies nearest to a place.
+class NearestVertex {
+ public:
+  NearestVertex(const TriangleMesh& mesh, std::vector<uint32_t> vertices)
+      : cloud_{mesh, std::move(vertices), UnitOf(mesh)}, tree_(3, cloud_) {}
+
+  // Lowers `best`, a squared distance; whether it could.
+  bool Improve(uint32_t from, double& best, uint32_t& nearest) const {
+    const Eigen::Vector3d place = cloud_.mesh.Position(from) * cloud_.unit;
+    uint32_t found = 0;
+    double distance = std::numeric_limits<double>::infinity();
+    tree_.knnSearch(place.data(), 1, &found, &distance);
+    if (!(distance < best)) return false;
+    best = distance;
+    nearest = cloud_.vertices[found];
+    return true;
+  }
+
+ private:
+  // Squares of coordinates must neither overflow nor vanish.
+  static double UnitOf(const TriangleMesh& mesh) {
+    return 1 / mesh.positions.cwiseAbs().maxCoeff();
+  }
+
+  // nanoflann's view of the vertices.
+  struct Cloud {
+    const TriangleMesh& mesh;
+    std::vector<uint32_t> vertices;
+    double unit;
+
+    size_t kdtree_get_point_count() const { return vertices.size(); }
+    double kdtree_get_pt(size_t i, size_t d) const {
+      return mesh.positions(vertices[i], d) * unit;
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+
+  Cloud cloud_;
+  nanoflann::KDTreeSingleIndexAdaptor<
+      nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
+      tree_;
+};
+
+// Rule 4.
+void Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
+            Bodies& bodies) {
+  if (attached.empty()) return;
+  std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
+  for (const Body& body : bodies.bodies)
+    for (size_t i = body.faces.size(); i-- > 0;)
+      for (uint32_t v : mesh.faces[body.faces[i]])
+        first_face[v] = body.faces[i];
+  std::vector<uint32_t> vertices;
+  for (uint32_t v = 0; v < mesh.NumVertices(); ++v)
+    if (first_face[v] != kNoIndex) vertices.push_back(v);
+  const NearestVertex near(mesh, std::move(vertices));
+  for (const Part& part : attached) {
+    double least = std::numeric_limits<double>::infinity();
+    uint32_t nearest = bodies.bodies[0].vertices[0];
+    for (uint32_t f : part.faces)
+      for (uint32_t v : mesh.faces[f]) near.Improve(v, least, nearest);
+    for (uint32_t f : part.faces) bodies.anchors[f] = first_face[nearest];
+  }
+}
+
+Body MakeBody(const TriangleMesh& mesh, Part part) {
+  Submesh own = ExtractFaces(mesh, part.faces);
+  Body body;
+  body.bridges = FindBridges(own.canonical.mesh);
+  body.canonical =
+      std::make_shared<const CanonicalMesh>(std::move(own.canonical));
+  body.faces = std::move(part.faces);
+  body.vertices = std::move(own.vertices);
+  body.share = part.share;
+  return body;
+}
+
+std::vector<uint32_t> Iota(uint32_t n) {
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+// Refers to the mesh instead of copying it.
+Body WholeBody(const CanonicalMesh& mesh) {
+  Body body;
+  body.canonical = std::shared_ptr<const CanonicalMesh>(
+      std::shared_ptr<const CanonicalMesh>(), &mesh);
+  body.faces = Iota(mesh.mesh.NumFaces());
+  body.vertices = Iota(mesh.mesh.NumVertices());
+  body.bridges = FindBridges(mesh.mesh);
+  return body;
+}
+
+void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
+          MeshReport& report) {
+  report.bodies = bodies.size();
+  for (const Part& part : bodies)
+    report.bridged_components += part.components > 1 ? part.components : 0;
+  for (const Part& part : attached) {
+    report.attached_components += part.components;
+    report.attached_faces += part.faces.size();
+  }
+}
+
+}  // namespace
+
+Bodies FindBodies(CanonicalMesh& mesh) {
+  Bodies result;
+  result.anchors = Iota(mesh.mesh.NumFaces());
+  if (mesh.report.components == 1) {
+    mesh.report.bodies = 1;
+    result.bodies.push_back(WholeBody(mesh));
+    return result;
+  }
+  const std::vector<double> areas = FaceAreaShares(mesh.mesh);
+  std::vector<Part> parts;
+  for (auto& faces : Components(mesh.mesh)) {
+    Part& part = parts.emplace_back();
+    part.share = AreaOf(faces, areas);
+    part.faces = std::move(faces);
+  }
+  LargestFirst(parts);
+  std::vector<Part> attached = Split(parts, CountOfWeight(parts));
+  parts = JoinNear(mesh.mesh, std::move(parts), mesh.report.bridging_distance);
+  LargestFirst(parts);
+  for (Part& part : Split(parts, CountBodies(parts)))
+    attached.push_back(std::move(part));
+  Note(parts, attached, mesh.report);
+
+  if (parts.size() == 1 && attached.empty()) {
+    result.bodies.push_back(WholeBody(mesh));
+  } else {
+    for (Part& part : parts)
+      result.bodies.push_back(MakeBody(mesh.mesh, std::move(part)));
+    Attach(mesh.mesh, attached, result);
+  }
+  double sum = 0;
+  for (const Body& body : result.bodies) {
+    mesh.report.bridges += body.bridges.size();
+    sum += body.share;
+  }
+  for (Body& body : result.bodies) body.share /= sum;
+  return result;
+}
+
+uint32_t PairsOfBody(const Body& body, uint32_t count) {
+  constexpr uint32_t kLeast = 30;
+  const double share = std::ceil(body.share * count);
+  return std::min(count, std::max(kLeast, static_cast<uint32_t>(share)));
+}
+
+}  // namespace marrow

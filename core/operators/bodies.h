@@ -1,0 +1,71 @@
+// Which components of a mesh are computed on together, which are segments of
+// their own, and which follow another: the one place that decides it.
+//
+// A component is what shared vertices connect, after welding. Its size is its
+// share of the mesh's area. In order:
+//  1. Of weight is a component of at least kWeight. Where those hold less than
+//     kMainShare of the area (a creature of scales or plates), of at least
+//     kLightWeight; the largest always is.
+//  2. Components of weight no farther apart than BridgingDistance() of all of
+//     weight are one body, through any number of others. A body has one
+//     operator, one spectrum and one tree, and its shells are bridged: it is
+//     segmented as if they had grown together.
+//  3. A body of at least kBodyShare of the largest is a segment of its own, a
+//     child of the root, if there are several; of the kMaxBodies largest.
+//  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
+//     a body that is too small for rule 3, has at every level the label of the
+//     face nearest to it by vertices. It enters no operator, so a mesh with
+//     specks is segmented exactly as without.
+#ifndef MARROW_CORE_OPERATORS_BODIES_H_
+#define MARROW_CORE_OPERATORS_BODIES_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/mesh/canonical_mesh.h"
+#include "core/operators/bridges.h"
+
+namespace marrow {
+
+inline constexpr double kWeight = 1e-2;
+inline constexpr double kLightWeight = 1e-4;
+inline constexpr double kMainShare = 0.5;
+inline constexpr double kBodyShare = 0.05;
+inline constexpr uint32_t kMaxBodies = 32;
+
+struct Body {
+  // The mesh to compute on: a submesh, or, where nothing is attached and there
+  // is one body, the whole mesh itself, which must then outlive this.
+  std::shared_ptr<const CanonicalMesh> canonical;
+  std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
+  std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
+  std::vector<Bridge> bridges;     // what the operator adds, own vertices
+  double share = 1;                // of the area of all bodies
+};
+
+// Immutable once built.
+struct Bodies {
+  std::vector<Body> bodies;  // by falling area, then least face; not empty
+  // Face of the whole mesh -> itself where a body has it, else the face of a
+  // body whose labels it takes.
+  std::vector<uint32_t> anchors;
+
+  // Whether the whole mesh is one body, so that nothing need be mapped.
+  bool IsWhole() const {
+    return bodies.size() == 1 && bodies[0].faces.size() == anchors.size();
+  }
+};
+
+// Takes the rules above to a mesh, and notes in its report what came of them.
+// Deterministic, O(n log^2 n). Thread safe.
+Bodies FindBodies(CanonicalMesh& mesh);
+
+// How many of the `count` pairs asked for a body has: its share of them, as
+// the shortest wave that they can tell is then the same on all bodies, but
+// enough for a level or two.
+uint32_t PairsOfBody(const Body& body, uint32_t count);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_OPERATORS_BODIES_H_
