@@ -18,6 +18,11 @@ namespace marrow {
 // Two vertices of different components, the lesser first.
 using Bridge = std::array<uint32_t, 2>;
 
+// The weight of a bridge in L. A vertex of a near zone is the end of about two,
+// its own and another's, and across a seam two edges of equilateral triangles
+// would conduct 2 / sqrt(3).
+inline constexpr double kBridgeWeight = 0.5;
+
 // How far apart two shells may be and still conduct as if they touched: the
 // mean edge, but at least a hundredth and at most three hundredths of the
 // diagonal of the box. In units of the positions.

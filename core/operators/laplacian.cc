@@ -263,9 +263,8 @@ absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
   }
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
     stencil->report.nonmanifold_edges += adjacency.EdgeFaces(e).size() > 2;
-  // A bridge conducts as two equilateral triangles across one edge do, about 1.
-  for (const auto& ends : FindBridges(mesh))
-    stencil->edges.push_back({ends, 1.0});
+  for (const Bridge& ends : FindBridges(mesh))
+    stencil->edges.push_back({ends, kBridgeWeight});
   Merge(stencil->edges);
   Laplacian laplacian{Matrix(stencil->edges, mesh.NumVertices()),
                       Masses(stencil->areas), stencil->report};

@@ -109,29 +109,186 @@ std::vector<uint32_t> FirstOf(std::vector<uint32_t> labels, size_t count) {
 
 class ShellsTest : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ShellsTest, ShellsCutAtTheJointsAreOneBody) {
+TEST_P(ShellsTest, CutAtTheJointsAreOneBody) {
   const CreatureMesh creature = MakeCreature(GetParam());
   const RecordingSink whole = RunOn(creature.mesh, Levels(1));
   const TriangleMesh open =
       CutAtJoints(creature, 0.005 * Diagonal(creature.mesh));
-  for (const TriangleMesh& cut : {open, Capped(open)}) {
+  // Caps are walls inside the limbs that the whole body has not.
+  const std::vector<std::pair<TriangleMesh, double>> cuts = {
+      {open, 0.08}, {Capped(open), 0.12}};
+  for (const auto& [cut, tolerance] : cuts) {
     const RecordingSink run = RunOn(cut, Levels(1));
     EXPECT_GT(run.mesh.report.components, 4u);
     EXPECT_EQ(run.mesh.report.bodies, 1u);
-    EXPECT_EQ(run.mesh.report.bridged_components,
-              run.mesh.report.components -
-                  run.mesh.report.attached_components);
+    EXPECT_EQ(run.mesh.report.bridged_components, run.mesh.report.components);
     EXPECT_LE(RandIndexDifference(FirstOf(run.levels[0].face_labels,
                                           creature.mesh.NumFaces()),
                                   whole.levels[0].face_labels),
-              0.08);
+              tolerance);
   }
+}
+
+TEST_P(ShellsTest, SkeletonsConnectAcrossThem) {
+  const CreatureMesh creature = MakeCreature(GetParam());
+  const RecordingSink run = RunOn(
+      CutAtJoints(creature, 0.005 * Diagonal(creature.mesh)), Levels(1));
+  const RecordingSink::Level& level = run.levels[0];
+  // Every bone has an articulation at its gap, or inside of a shell.
+  EXPECT_EQ(level.skeleton.joints.size(),
+            2 * level.tree.SegmentsAtLevel(1).size() - 1);
+  ExpectSoundSkeleton(run.mesh.mesh, Adjacency(run.mesh.mesh), level.tree, 1,
+                      level.skeleton);
+}
+
+// Tiny tetrahedra strewn around a creature, near and far.
+TriangleMesh WithSpecks(TriangleMesh mesh, uint32_t count) {
+  std::mt19937 random(7);
+  const Eigen::RowVector3d low = mesh.positions.colwise().minCoeff();
+  const Eigen::RowVector3d size =
+      mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff();
+  const TriangleMesh speck = Tetrahedron();
+  uint32_t next = mesh.NumVertices();
+  mesh.positions.conservativeResize(next + 4 * count, 3);
+  for (uint32_t s = 0; s < count; ++s) {
+    Eigen::RowVector3d place;
+    for (int i = 0; i < 3; ++i)
+      place[i] = low[i] + size[i] * (3 * (random() * 0x1p-32) - 1);
+    for (const Triangle& face : speck.faces)
+      mesh.faces.push_back({face[0] + next, face[1] + next, face[2] + next});
+    for (uint32_t v = 0; v < 4; ++v)
+      mesh.positions.row(next++) =
+          place + 1e-3 * size.norm() * speck.positions.row(v);
+  }
+  return mesh;
+}
+
+TEST_P(ShellsTest, AThousandSpecksChangeNothing) {
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
+  const RecordingSink clean = RunOn(mesh, Levels(2));
+  const RecordingSink run = RunOn(WithSpecks(mesh, 1000), Levels(2));
+  EXPECT_EQ(run.mesh.report.components, 1001u);
+  EXPECT_EQ(run.mesh.report.attached_components, 1000u);
+  EXPECT_EQ(run.mesh.report.attached_faces, 4000u);
+  ASSERT_EQ(run.levels.size(), clean.levels.size());
+  for (size_t i = 0; i < run.levels.size(); ++i) {
+    const auto& labels = run.levels[i].face_labels;
+    EXPECT_EQ(FirstOf(labels, mesh.NumFaces()), clean.levels[i].face_labels);
+    // A speck is in one piece at every level.
+    for (size_t f = mesh.NumFaces(); f < labels.size(); f += 4)
+      for (size_t i = 1; i < 4; ++i) EXPECT_EQ(labels[f + i], labels[f]);
+  }
+  ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
+                  run.mesh.report.area, true);
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, ShellsTest,
                          ::testing::Values("humanoid", "quadruped", "hand",
                                            "octopus"),
                          [](const auto& info) { return info.param; });
+
+TriangleMesh Moved(TriangleMesh mesh, const Eigen::RowVector3d& by) {
+  mesh.positions.rowwise() += by;
+  return mesh;
+}
+
+// In one file, where they are.
+TriangleMesh Together(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both;
+  const uint32_t n = a.NumVertices();
+  both.positions.resize(n + b.NumVertices(), 3);
+  both.positions << a.positions, b.positions;
+  both.faces = a.faces;
+  for (const Triangle& f : b.faces)
+    both.faces.push_back({n + f[0], n + f[1], n + f[2]});
+  return both;
+}
+
+TEST(BodiesTest, TwoCreaturesAreChildrenOfTheRoot) {
+  const TriangleMesh octopus = MakeCreature("octopus").mesh;
+  const TriangleMesh hand = Scaled(MakeCreature("hand").mesh, 0.7);
+  const TriangleMesh mesh = Together(
+      octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
+  const RecordingSink run = RunOn(mesh, Levels(2));
+  EXPECT_EQ(run.mesh.report.bodies, 2u);
+  ASSERT_EQ(run.levels.size(), 2u);
+  const auto& first = run.levels[0].face_labels;
+  EXPECT_EQ(std::set<uint32_t>(first.begin(), first.end()).size(), 2u);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    EXPECT_EQ(first[f], first[f < octopus.NumFaces() ? 0 : mesh.NumFaces() - 1]);
+  ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
+                  run.mesh.report.area, true);
+
+  // Each at its own scale, as if it were alone.
+  const RecordingSink alone = RunOn(octopus, Levels(1));
+  EXPECT_LE(RandIndexDifference(
+                FirstOf(run.levels[1].face_labels, octopus.NumFaces()),
+                alone.levels[0].face_labels),
+            0.01);
+}
+
+TEST(BodiesTest, AnEyeFollowsTheHead) {
+  const CreatureMesh creature = MakeCreature("humanoid");
+  const RecordingSink clean = RunOn(creature.mesh, Levels(3));
+  // Above the head, farther than shells are bridged.
+  Eigen::Index top;
+  creature.mesh.positions.col(1).maxCoeff(&top);
+  const double diagonal = Diagonal(creature.mesh);
+  const TriangleMesh mesh = Together(
+      creature.mesh,
+      Moved(Scaled(Icosphere(2), 0.01 * diagonal),
+            creature.mesh.positions.row(top) +
+                Eigen::RowVector3d(0, 0.06 * diagonal, 0)));
+  const RecordingSink run = RunOn(mesh, Levels(3));
+  EXPECT_EQ(run.mesh.report.attached_components, 1u);
+  const Adjacency adjacency(creature.mesh);
+  const uint32_t head =
+      adjacency.VertexFaces(static_cast<uint32_t>(top)).front();
+  ASSERT_EQ(run.levels.size(), clean.levels.size());
+  for (size_t i = 0; i < run.levels.size(); ++i) {
+    const auto& labels = run.levels[i].face_labels;
+    EXPECT_EQ(FirstOf(labels, creature.mesh.NumFaces()),
+              clean.levels[i].face_labels);
+    for (size_t f = creature.mesh.NumFaces(); f < labels.size(); ++f)
+      EXPECT_EQ(labels[f], labels[head]);
+  }
+}
+
+TEST(BodiesTest, FlippedFacesChangeNothing) {
+  const TriangleMesh mesh = MakeCreature("quadruped").mesh;
+  TriangleMesh flipped = mesh;
+  std::mt19937 random(3);
+  for (Triangle& face : flipped.faces)
+    if (random() % 2) std::swap(face[1], face[2]);
+  const RecordingSink expected = RunOn(mesh, Levels(2));
+  const RecordingSink run = RunOn(flipped, Levels(2));
+  ASSERT_EQ(run.levels.size(), expected.levels.size());
+  for (size_t i = 0; i < run.levels.size(); ++i)
+    EXPECT_LE(RandIndexDifference(run.levels[i].face_labels,
+                                  expected.levels[i].face_labels),
+              0.001);
+}
+
+// Without every 60th vertex and the faces around it.
+TEST(BodiesTest, HolesAreNoJoints) {
+  const TriangleMesh mesh = MakeCreature("quadruped").mesh;
+  TriangleMesh holed = mesh;
+  holed.faces.clear();
+  std::vector<uint32_t> kept;
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Triangle& t = mesh.faces[f];
+    if (std::any_of(t.begin(), t.end(), [](uint32_t v) { return v % 60 == 0; }))
+      continue;
+    kept.push_back(f);
+    holed.faces.push_back(t);
+  }
+  const RecordingSink expected = RunOn(mesh, Levels(1));
+  const RecordingSink run = RunOn(holed, Levels(1));
+  EXPECT_GE(run.mesh.report.boundary_loops, 30u);
+  std::vector<uint32_t> labels;
+  for (uint32_t f : kept) labels.push_back(expected.levels[0].face_labels[f]);
+  EXPECT_LE(RandIndexDifference(run.levels[0].face_labels, labels), 0.03);
+}
 
 }  // namespace
 }  // namespace marrow
