@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/mesh/adjacency.h"
+#include "core/mesh/orientation.h"
 
 namespace marrow {
 namespace {
@@ -99,6 +100,7 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
     const double cross = (b - a).cross(c - a).stableNorm();
     const double reach =
         std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+    if (IsSliver(a, b, c, cross)) ++report.sliver_faces;
     if (cross <= kDoubt * reach && Collinear(a, b, c)) {
       ++report.zero_area_faces;
     } else {
@@ -106,6 +108,16 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
     }
   }
   report.area = twice_area / 2 / scale / scale;
+}
+
+// An angle under one degree. The least is opposite to the shortest edge.
+bool IsSliver(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+              double cross) {
+  constexpr double kSineOfOneDegree = 0.017452406437283512;
+  double edges[] = {(b - a).stableNorm(), (c - b).stableNorm(),
+                    (a - c).stableNorm()};
+  std::sort(edges, edges + 3);
+  return cross < kSineOfOneDegree * edges[1] * edges[2];
 }
 
 void CountEdges(const Adjacency& adjacency, MeshReport& report) {
@@ -178,6 +190,13 @@ MeshReport ReportOn(const TriangleMesh& mesh) {
   report.euler_characteristic = static_cast<int64_t>(report.vertices) -
                                 adjacency.NumEdges() +
                                 static_cast<int64_t>(report.faces);
+  const Orientation orientation = CheckOrientation(mesh, adjacency);
+  report.flipped_faces = orientation.flipped_faces;
+  report.orientable = orientation.orientable;
+  if (report.orientable && report.boundary_edges == 0 &&
+      report.nonmanifold_edges == 0 && report.nonmanifold_vertices == 0) {
+    report.genus = report.components - report.euler_characteristic / 2;
+  }
   return report;
 }
 

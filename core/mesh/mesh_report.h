@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "core/mesh/triangle_mesh.h"
 
@@ -21,6 +22,11 @@ struct MeshReport {
   uint64_t degenerate_faces = 0;   // two corners at one position; dropped
   uint64_t duplicate_faces = 0;    // same three vertices as another; dropped
   uint64_t zero_area_faces = 0;    // kept, three corners exactly on a line
+  uint64_t sliver_faces = 0;       // kept, with an angle under one degree
+  // Faces to turn over, at the least, for neighbours to agree; one-sided parts
+  // of the mesh (a Moebius strip) are left out and make it not orientable.
+  uint64_t flipped_faces = 0;
+  bool orientable = true;
   uint64_t components = 0;         // connected through shared vertices
   uint64_t boundary_edges = 0;     // in exactly one kept face
   uint64_t boundary_loops = 0;     // connected components of boundary edges
@@ -30,6 +36,9 @@ struct MeshReport {
   uint64_t nonmanifold_vertices = 0;
   // Vertices - edges + faces.
   int64_t euler_characteristic = 0;
+  // Handles of all components together; nothing where the mesh is not a closed,
+  // orientable surface.
+  std::optional<uint64_t> genus;
   // What core/operators/bodies.h makes of the components; 0 before it has.
   uint64_t bodies = 0;               // computed on by themselves
   uint64_t bridged_components = 0;   // joined with others to one body
@@ -37,6 +46,7 @@ struct MeshReport {
   double bridging_distance = 0;      // how near those have to be
   uint64_t attached_components = 0;  // that take the nearest part's label
   uint64_t attached_faces = 0;       // of those
+  uint64_t body_vertices = 0;        // that are computed on
   double area = 0;  // inf or 0 where it leaves the range of a double
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();

@@ -237,8 +237,12 @@ Body WholeBody(const CanonicalMesh& mesh) {
 }
 
 void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
-          MeshReport& report) {
+          double distance, MeshReport& report) {
   report.bodies = bodies.size();
+  report.bridging_distance = distance;
+  report.bridged_components = 0;
+  report.attached_components = 0;
+  report.attached_faces = 0;
   for (const Part& part : bodies)
     report.bridged_components += part.components > 1 ? part.components : 0;
   for (const Part& part : attached) {
@@ -254,6 +258,7 @@ Bodies FindBodies(CanonicalMesh& mesh) {
   result.anchors = Iota(mesh.mesh.NumFaces());
   if (mesh.report.components == 1) {
     mesh.report.bodies = 1;
+    mesh.report.body_vertices = mesh.mesh.NumVertices();
     result.bodies.push_back(WholeBody(mesh));
     return result;
   }
@@ -266,11 +271,12 @@ Bodies FindBodies(CanonicalMesh& mesh) {
   }
   LargestFirst(parts);
   std::vector<Part> attached = Split(parts, CountOfWeight(parts));
-  parts = JoinNear(mesh.mesh, std::move(parts), mesh.report.bridging_distance);
+  double distance = 0;
+  parts = JoinNear(mesh.mesh, std::move(parts), distance);
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
-  Note(parts, attached, mesh.report);
+  Note(parts, attached, distance, mesh.report);
 
   if (parts.size() == 1 && attached.empty()) {
     result.bodies.push_back(WholeBody(mesh));
@@ -279,9 +285,11 @@ Bodies FindBodies(CanonicalMesh& mesh) {
       result.bodies.push_back(MakeBody(mesh.mesh, std::move(part)));
     Attach(mesh.mesh, attached, result);
   }
+  mesh.report.bridges = mesh.report.body_vertices = 0;
   double sum = 0;
   for (const Body& body : result.bodies) {
     mesh.report.bridges += body.bridges.size();
+    mesh.report.body_vertices += body.vertices.size();
     sum += body.share;
   }
   for (Body& body : result.bodies) body.share /= sum;
