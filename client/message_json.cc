@@ -54,6 +54,14 @@ json ReportJson(const v1::MeshReport& report) {
   json result = NumbersJson(report);
   result["box_min"] = PointJson(report.box_min());
   result["box_max"] = PointJson(report.box_max());
+  if (!report.has_genus()) result["genus"] = nullptr;
+  result["predicted_bytes"] = report.predicted_bytes();
+  result["findings"] = json::array();
+  for (const v1::Finding& finding : report.findings()) {
+    result["findings"].push_back({{"code", finding.code()},
+                                  {"count", finding.count()},
+                                  {"message", finding.message()}});
+  }
   return result;
 }
 

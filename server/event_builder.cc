@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/base/crc32c.h"
+#include "server/mesh_warnings.h"
+#include "server/prediction.h"
 
 namespace marrow {
 namespace {
@@ -143,6 +145,25 @@ void SetMeshReport(const MeshReport& report, v1::MeshReport* message) {
   message->set_area(report.area);
   SetVector(report.box_min, message->mutable_box_min());
   SetVector(report.box_max, message->mutable_box_max());
+  message->set_sliver_faces(report.sliver_faces);
+  message->set_flipped_faces(report.flipped_faces);
+  if (report.genus.has_value()) message->set_genus(*report.genus);
+  message->set_bodies(report.bodies);
+  message->set_bridged_components(report.bridged_components);
+  message->set_bridges(report.bridges);
+  message->set_bridging_distance(report.bridging_distance);
+  message->set_attached_components(report.attached_components);
+  message->set_attached_faces(report.attached_faces);
+  for (v1::Finding& finding : FindingsAbout(report)) {
+    *message->add_findings() = std::move(finding);
+  }
+}
+
+void SetPrediction(const MeshReport& report, uint32_t eigen_pairs,
+                   v1::MeshReport* message) {
+  const Prediction prediction = PredictSegmentation(report, eigen_pairs);
+  message->set_predicted_seconds(prediction.seconds);
+  message->set_predicted_bytes(prediction.bytes);
 }
 
 void SetSpectrumUse(const SpectrumUse& use, v1::SpectrumUse* message) {

@@ -24,7 +24,10 @@ inline constexpr size_t kChunkBytes = 256 << 10;
 
 void SetMeshDigest(const MeshDigest& digest, v1::MeshDigest* message);
 void SetGeometryDigest(const Digest& digest, v1::GeometryDigest* message);
+// All but the prediction, which is for a number of eigen-pairs.
 void SetMeshReport(const MeshReport& report, v1::MeshReport* message);
+void SetPrediction(const MeshReport& report, uint32_t eigen_pairs,
+                   v1::MeshReport* message);
 void SetSpectrumUse(const SpectrumUse& use, v1::SpectrumUse* message);
 v1::Stage ToStage(Stage stage);
 

@@ -1,5 +1,6 @@
 #include "server/mesh_store_service.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "core/operators/bodies.h"
 #include "server/event_builder.h"
 #include "server/request_parser.h"
 #include "server/run_guarded.h"
@@ -18,11 +20,6 @@ namespace marrow {
 namespace {
 
 constexpr int kMaxDigestsAsked = 1000;
-
-// Decoding, welding and splitting into three levels; measured on meshes of
-// 5,000 to 50,000 faces, and good to a factor of two.
-constexpr double kSecondsAFace = 2e-5;
-constexpr uint64_t kBytesAFace = 600;
 
 absl::StatusOr<v1::FindMissingMeshesResponse> FindMissing(
     ServiceContext& context, const v1::FindMissingMeshesRequest& request) {
@@ -64,23 +61,30 @@ absl::StatusOr<Inspection> ParseInspection(
   return inspection;
 }
 
+// Whether a Segment call would need no solver.
+bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count) {
+  const Bodies bodies = FindBodies(mesh);
+  return std::all_of(bodies.bodies.begin(), bodies.bodies.end(),
+                     [&](const Body& body) {
+                       return context.spectra.Contains(
+                           *body.canonical, PairsOfBody(body, count));
+                     });
+}
+
 absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
                                                 const Inspection& inspection) {
   MARROW_ASSIGN_OR_RETURN(
-      const CanonicalMesh mesh,
-      context.engine.load_mesh(*inspection.payload.bytes,
-                               context.options.mesh_limits));
+      CanonicalMesh mesh, context.engine.load_mesh(*inspection.payload.bytes,
+                                                   context.options.mesh_limits));
   const uint32_t count = inspection.eigen_pairs;
   v1::InspectMeshResponse response;
+  response.set_spectrum_cached(IsCached(context, mesh, count));
   SetMeshReport(mesh.report, response.mutable_report());
+  SetPrediction(mesh.report, count, response.mutable_report());
   SetMeshDigest(inspection.payload.digest, response.mutable_mesh_digest());
   SetGeometryDigest(mesh.geometry_digest, response.mutable_geometry_digest());
-  response.set_spectrum_cached(context.spectra.Contains(mesh, count));
-  response.set_predicted_seconds(
-      PredictSolverSeconds(mesh.report.vertices, count) +
-      kSecondsAFace * static_cast<double>(mesh.report.faces));
-  response.set_predicted_bytes(PredictSolverBytes(mesh.report.vertices, count) +
-                               kBytesAFace * mesh.report.faces);
+  response.set_predicted_seconds(response.report().predicted_seconds());
+  response.set_predicted_bytes(response.report().predicted_bytes());
   return response;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 
@@ -12,60 +13,117 @@ namespace {
 // origin leave it fewer than 8 bits.
 constexpr double kFarAway = 1e5;
 
-std::string Count(uint64_t count, const char* one, const char* many) {
-  return absl::StrCat(count, " ", count == 1 ? one : many);
-}
-
 double DistanceInExtents(const MeshReport& report) {
   const double distance =
       report.box_min.cwiseAbs().cwiseMax(report.box_max.cwiseAbs()).maxCoeff();
   return distance / (report.box_max - report.box_min).maxCoeff();
 }
 
+// A kind of finding. `one` and `many` go on after the count, and tell what is
+// done.
+struct Kind {
+  const char* code;
+  bool is_warning;
+  uint64_t MeshReport::*count;
+  const char* one;
+  const char* many;
+};
+
+constexpr Kind kKinds[] = {
+    {"WELDED_POINTS", false, &MeshReport::welded_points,
+     "point lies where another does; it is welded to it",
+     "points lie where others do; they are welded to those"},
+    {"DEGENERATE_FACES", true, &MeshReport::degenerate_faces,
+     "face has two corners at one position; it has a neighbour's label",
+     "faces have two corners at one position; each has a neighbour's label"},
+    {"DUPLICATE_FACES", true, &MeshReport::duplicate_faces,
+     "face has the same corners as another, and the label of that one",
+     "faces have the same corners as another, and the label of that one"},
+    {"ZERO_AREA_FACES", false, &MeshReport::zero_area_faces,
+     "face has its corners on one line; its edges are lengthened a little",
+     "faces have their corners on one line; all edges are lengthened a little"},
+    {"SLIVER_FACES", false, &MeshReport::sliver_faces,
+     "face has an angle under one degree; its edges are flipped inside of the "
+     "surface",
+     "faces have an angle under one degree; their edges are flipped inside of "
+     "the surface"},
+    {"FLIPPED_FACES", false, &MeshReport::flipped_faces,
+     "face is turned against its neighbours, which does not matter",
+     "faces are turned against their neighbours, which does not matter"},
+    {"NONMANIFOLD_EDGES", true, &MeshReport::nonmanifold_edges,
+     "edge has more than two faces; what meets there counts as connected",
+     "edges have more than two faces; what meets there counts as connected"},
+    {"NONMANIFOLD_VERTICES", false, &MeshReport::nonmanifold_vertices,
+     "vertex joins parts that share no edge; they count as connected",
+     "vertices join parts that share no edge; they count as connected"},
+    {"BOUNDARIES", false, &MeshReport::boundary_loops,
+     "hole or open border; it is left open and is no joint",
+     "holes or open borders; they are left open and are no joints"},
+    {"COMPONENTS_BRIDGED", true, &MeshReport::bridged_components,
+     "component is joined with another",
+     "components are so near to each other that they are segmented as if they "
+     "had grown together"},
+    {"COMPONENTS_ATTACHED", true, &MeshReport::attached_components,
+     "component is too small to be segmented, and has the label of the nearest "
+     "part",
+     "components are too small to be segmented, and have the label of the "
+     "nearest part"},
+    {"UNUSED_POINTS", true, &MeshReport::unused_points,
+     "point is in no face, and without a label",
+     "points are in no face, and without a label"},
+};
+
+v1::Finding MakeFinding(const char* code, uint64_t count,
+                        const std::string& message) {
+  v1::Finding finding;
+  finding.set_code(code);
+  finding.set_count(static_cast<uint32_t>(count));
+  finding.set_message(message);
+  return finding;
+}
+
+bool IsWarning(const std::string& code) {
+  for (const Kind& kind : kKinds)
+    if (code == kind.code) return kind.is_warning;
+  return true;
+}
+
 }  // namespace
+
+std::vector<v1::Finding> FindingsAbout(const MeshReport& report) {
+  std::vector<v1::Finding> findings;
+  for (const Kind& kind : kKinds) {
+    const uint64_t count = report.*kind.count;
+    if (count == 0) continue;
+    findings.push_back(MakeFinding(
+        kind.code, count,
+        absl::StrCat(count, " ", count == 1 ? kind.one : kind.many)));
+  }
+  if (report.bodies > 1) {
+    findings.push_back(MakeFinding(
+        "SEVERAL_BODIES", report.bodies,
+        absl::StrCat("the mesh is ", report.bodies,
+                     " bodies far from each other; each is a segment of level "
+                     "1 and is segmented at a scale of its own")));
+  }
+  if (DistanceInExtents(report) > kFarAway) {
+    findings.push_back(MakeFinding(
+        "FAR_FROM_ORIGIN", 1,
+        absl::StrCat("the mesh lies ", DistanceInExtents(report),
+                     " times its own size away from the origin, where "
+                     "coordinates have few digits left for its shape; move it "
+                     "to the origin where it was made")));
+  }
+  return findings;
+}
 
 std::vector<v1::Warning> WarningsAbout(const MeshReport& report) {
   std::vector<v1::Warning> warnings;
-  const auto warn = [&warnings](const char* code, std::string message) {
+  for (v1::Finding& finding : FindingsAbout(report)) {
+    if (!IsWarning(finding.code())) continue;
     v1::Warning& warning = warnings.emplace_back();
-    warning.set_code(code);
-    warning.set_message(std::move(message));
-  };
-  if (report.components > 1) {
-    warn("COMPONENTS_BRIDGED",
-         absl::StrCat("the mesh is in ", report.components,
-                      " pieces that do not touch; they are taken for one body, "
-                      "joined where they are nearest"));
-  }
-  if (report.degenerate_faces > 0) {
-    warn("DEGENERATE_FACES",
-         absl::StrCat(
-             Count(report.degenerate_faces, "face has", "faces have"),
-             " two corners at one position; each has a neighbour's label"));
-  }
-  if (report.duplicate_faces > 0) {
-    warn("DUPLICATE_FACES",
-         absl::StrCat(
-             Count(report.duplicate_faces, "face has", "faces have"),
-             " the same corners as another, and the label of that one"));
-  }
-  if (report.nonmanifold_edges > 0) {
-    warn("NONMANIFOLD_EDGES",
-         absl::StrCat(
-             Count(report.nonmanifold_edges, "edge has", "edges have"),
-             " more than two faces; what meets there counts as connected"));
-  }
-  if (report.unused_points > 0) {
-    warn("UNUSED_POINTS",
-         absl::StrCat(Count(report.unused_points, "point is", "points are"),
-                      " in no face, and without a label"));
-  }
-  if (DistanceInExtents(report) > kFarAway) {
-    warn("FAR_FROM_ORIGIN",
-         absl::StrCat("the mesh lies ", DistanceInExtents(report),
-                      " times its own size away from the origin, where "
-                      "coordinates have few digits left for its shape; move it "
-                      "to the origin where it was made"));
+    warning.set_code(std::move(*finding.mutable_code()));
+    warning.set_message(std::move(*finding.mutable_message()));
   }
   return warnings;
 }

@@ -51,8 +51,8 @@ class JobEigenPairs : public EigenPairSource {
 
 class JobSink : public Sink {
  public:
-  JobSink(const Outputs& outputs, SegmentJob& job)
-      : outputs_(outputs), job_(job) {}
+  JobSink(const SegmentParameters& parameters, SegmentJob& job)
+      : parameters_(parameters), outputs_(parameters.outputs), job_(job) {}
 
   bool OnProgress(Stage stage, double fraction) override {
     return job_.Progress(ToStage(stage), fraction);
@@ -64,6 +64,8 @@ class JobSink : public Sink {
     geometry_digest_ = mesh.geometry_digest;
     v1::SegmentEvent event;
     SetMeshReport(mesh.report, event.mutable_mesh_report());
+    SetPrediction(mesh.report, parameters_.options.eigen_pairs,
+                  event.mutable_mesh_report());
     job_.Append(std::move(event));
     for (v1::Warning& warning : WarningsAbout(mesh.report)) {
       *event.mutable_warning() = std::move(warning);
@@ -125,6 +127,7 @@ class JobSink : public Sink {
     for (v1::SegmentEvent& event : events) job_.Append(std::move(event));
   }
 
+  const SegmentParameters& parameters_;
   const Outputs& outputs_;
   SegmentJob& job_;
   std::optional<LevelEvents> level_events_;
@@ -159,7 +162,7 @@ void RunSegmentJob(ServiceContext& context, const Payload& payload,
                    const SegmentParameters& parameters, SegmentJob& job) {
   const Clock::time_point begin = Clock::now();
   JobEigenPairs pairs(context.spectra);
-  JobSink sink(parameters.outputs, job);
+  JobSink sink(parameters, job);
   const absl::Status status = RunGuarded(*job.cancel(), [&] {
     return context.engine.run(*payload.bytes, context.options.mesh_limits,
                               parameters.options, pairs, *job.cancel(), sink);

@@ -31,6 +31,7 @@ void PrintForPerson(const std::string& file,
   PrintCount("vertices", report.vertices());
   PrintCount("faces", report.faces());
   PrintCount("components", report.components());
+  PrintCount("bodies", report.bodies());
   PrintCount("boundary loops", report.boundary_loops());
   PrintCount("boundary edges", report.boundary_edges());
   PrintCount("non-manifold edges", report.nonmanifold_edges());
@@ -38,9 +39,12 @@ void PrintForPerson(const std::string& file,
   PrintCount("degenerate faces", report.degenerate_faces());
   PrintCount("duplicate faces", report.duplicate_faces());
   PrintCount("zero-area faces", report.zero_area_faces());
+  PrintCount("sliver faces", report.sliver_faces());
+  PrintCount("flipped faces", report.flipped_faces());
   PrintCount("unused points", report.unused_points());
   absl::PrintF("  %-24s %d\n", "Euler characteristic",
                report.euler_characteristic());
+  if (report.has_genus()) PrintCount("genus", report.genus());
   absl::PrintF("  %-24s %g\n", "area", report.area());
   PrintBox(report);
   absl::PrintF("  %-24s %.1f s, %.0f MiB%s\n", "segmenting takes about",
@@ -49,6 +53,9 @@ void PrintForPerson(const std::string& file,
                response.spectrum_cached() ? ", spectrum kept" : "");
   absl::PrintF("  %-24s %s\n", "geometry",
                HexOf(response.geometry_digest().sha256()));
+  for (const v1::Finding& finding : report.findings()) {
+    absl::PrintF("  %s\n", finding.message());
+  }
 }
 
 nlohmann::json ToJson(const std::string& file,

@@ -87,6 +87,16 @@ double UnitScale(const TriangleMesh& mesh) {
   return std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
 }
 
+// An angle under one degree. The least is opposite to the shortest edge.
+bool IsSliver(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+              double cross) {
+  constexpr double kSineOfOneDegree = 0.017452406437283512;
+  double edges[] = {(b - a).stableNorm(), (c - b).stableNorm(),
+                    (a - c).stableNorm()};
+  std::sort(edges, edges + 3);
+  return cross < kSineOfOneDegree * edges[1] * edges[2];
+}
+
 void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
   // Below this share of the longest coordinates the rounding of the cross
   // product could hide that the corners are not quite on a line.
@@ -108,16 +118,6 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
     }
   }
   report.area = twice_area / 2 / scale / scale;
-}
-
-// An angle under one degree. The least is opposite to the shortest edge.
-bool IsSliver(const Vector3d& a, const Vector3d& b, const Vector3d& c,
-              double cross) {
-  constexpr double kSineOfOneDegree = 0.017452406437283512;
-  double edges[] = {(b - a).stableNorm(), (c - b).stableNorm(),
-                    (a - c).stableNorm()};
-  std::sort(edges, edges + 3);
-  return cross < kSineOfOneDegree * edges[1] * edges[2];
 }
 
 void CountEdges(const Adjacency& adjacency, MeshReport& report) {

@@ -5,17 +5,22 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace marrow {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Pair;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 MeshReport CleanReport() {
   MeshReport report;
-  report.components = 1;
+  report.components = report.bodies = 1;
   report.box_min = Eigen::Vector3d(-1, 0, 0);
   report.box_max = Eigen::Vector3d(1, 1, 1);
   return report;
@@ -26,6 +31,29 @@ TEST(MeshWarningsTest, ACleanMeshHasNone) {
   report.boundary_edges = 7;
   report.welded_points = 9;
   EXPECT_THAT(WarningsAbout(report), IsEmpty());
+}
+
+TEST(FindingsTest, TellOfMoreThanWarnings) {
+  MeshReport report = CleanReport();
+  EXPECT_THAT(FindingsAbout(report), IsEmpty());
+  report.welded_points = 9;
+  report.boundary_loops = 1;
+  report.sliver_faces = 2;
+  report.flipped_faces = 3;
+  report.degenerate_faces = 4;
+  const std::vector<v1::Finding> findings = FindingsAbout(report);
+  std::vector<std::pair<std::string, uint32_t>> counts;
+  for (const v1::Finding& finding : findings) {
+    counts.push_back({finding.code(), finding.count()});
+    EXPECT_THAT(finding.message(),
+                StartsWith(std::to_string(finding.count())));
+  }
+  EXPECT_THAT(counts, ElementsAre(Pair("WELDED_POINTS", 9),
+                                  Pair("DEGENERATE_FACES", 4),
+                                  Pair("SLIVER_FACES", 2),
+                                  Pair("FLIPPED_FACES", 3),
+                                  Pair("BOUNDARIES", 1)));
+  EXPECT_THAT(WarningsAbout(report), SizeIs(1));
 }
 
 struct Flaw {
@@ -47,8 +75,12 @@ TEST_P(FlawTest, IsTold) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FlawTest,
-    ::testing::Values(Flaw{"COMPONENTS_BRIDGED", "in 12 pieces",
-                           [](MeshReport& r) { r.components = 12; }},
+    ::testing::Values(Flaw{"COMPONENTS_BRIDGED", "12 components are so near",
+                           [](MeshReport& r) { r.bridged_components = 12; }},
+                      Flaw{"COMPONENTS_ATTACHED", "1 component is too small",
+                           [](MeshReport& r) { r.attached_components = 1; }},
+                      Flaw{"SEVERAL_BODIES", "the mesh is 3 bodies",
+                           [](MeshReport& r) { r.bodies = 3; }},
                       Flaw{"DEGENERATE_FACES", "3 faces have two corners",
                            [](MeshReport& r) { r.degenerate_faces = 3; }},
                       Flaw{"DUPLICATE_FACES", "1 face has the same corners",
@@ -67,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(MeshWarningsTest, EachFlawIsToldOnItsOwn) {
   MeshReport report = CleanReport();
-  report.components = 2;
+  report.attached_components = 2;
   report.unused_points = 5;
   EXPECT_THAT(WarningsAbout(report), SizeIs(2));
 }

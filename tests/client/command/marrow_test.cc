@@ -99,7 +99,28 @@ TEST(MarrowTest, InspectReportsOnAMesh) {
   EXPECT_EQ(result["report"]["faces"], 4);
   EXPECT_EQ(result["report"]["vertices"], 4);
   EXPECT_EQ(result["report"]["euler_characteristic"], 2);
+  EXPECT_EQ(result["report"]["genus"], 0);
+  EXPECT_EQ(result["report"]["bodies"], 1);
+  EXPECT_GT(result["report"]["predicted_bytes"], 0);
+  EXPECT_EQ(result["report"]["findings"], json::array());
   EXPECT_EQ(result["geometry_digest"].get<std::string>().size(), 64u);
+}
+
+TEST(MarrowTest, InspectTellsWhatWillBeDone) {
+  const TemporaryFolder folder;
+  // Two triangles turned against each other, with a point to spare.
+  WriteFile(folder / "t.off",
+            "OFF\n5 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n9 9 9\n"
+            "3 0 1 2\n3 1 2 3\n");
+  const Finished person = Marrow({"inspect", folder / "t.off"});
+  EXPECT_THAT(person.out, HasSubstr("1 face is turned against"));
+  EXPECT_THAT(person.out, HasSubstr("1 hole or open border"));
+  const json report =
+      json::parse(Marrow({"inspect", folder / "t.off", "--json"}).out)["report"];
+  EXPECT_EQ(report["flipped_faces"], 1);
+  EXPECT_TRUE(report["genus"].is_null());
+  EXPECT_EQ(report["findings"][0]["code"], "FLIPPED_FACES");
+  EXPECT_EQ(report["findings"][1]["code"], "BOUNDARIES");
 }
 
 TEST(MarrowTest, InspectTellsWhatIsWrong) {

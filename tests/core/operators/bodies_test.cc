@@ -1,0 +1,158 @@
+#include "core/operators/bodies.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+TriangleMesh MovedTo(TriangleMesh mesh, double x) {
+  mesh.positions.col(0).array() += x;
+  return mesh;
+}
+
+TriangleMesh Together(const std::vector<TriangleMesh>& meshes) {
+  TriangleMesh all;
+  for (const TriangleMesh& mesh : meshes) {
+    const uint32_t n = all.NumVertices();
+    all.positions.conservativeResize(n + mesh.NumVertices(), 3);
+    all.positions.bottomRows(mesh.NumVertices()) = mesh.positions;
+    for (const Triangle& f : mesh.faces)
+      all.faces.push_back({n + f[0], n + f[1], n + f[2]});
+  }
+  return all;
+}
+
+TEST(BodiesTest, OnePieceIsItself) {
+  CanonicalMesh mesh = CanonicalOf(Icosphere(2));
+  const Bodies bodies = FindBodies(mesh);
+  EXPECT_TRUE(bodies.IsWhole());
+  EXPECT_EQ(bodies.bodies[0].canonical.get(), &mesh);
+  EXPECT_EQ(mesh.report.bodies, 1u);
+  EXPECT_EQ(mesh.report.bridges, 0u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[0], 123), 123u);
+}
+
+TEST(BodiesTest, NearShellsAreOne) {
+  CanonicalMesh mesh =
+      CanonicalOf(Together({Icosphere(3), MovedTo(Icosphere(3), 2.01)}));
+  const Bodies bodies = FindBodies(mesh);
+  EXPECT_TRUE(bodies.IsWhole());
+  EXPECT_EQ(mesh.report.bridged_components, 2u);
+  EXPECT_GT(mesh.report.bridges, 1u);
+  EXPECT_EQ(mesh.report.bridges, bodies.bodies[0].bridges.size());
+  // Said twice, it is the same.
+  (void)FindBodies(mesh);
+  EXPECT_EQ(mesh.report.bridged_components, 2u);
+  EXPECT_EQ(mesh.report.bridges, bodies.bodies[0].bridges.size());
+}
+
+TEST(BodiesTest, FarShellsAreSeveralTheLargestFirst) {
+  CanonicalMesh mesh = CanonicalOf(Together(
+      {Scaled(Icosphere(2), 0.5), MovedTo(Icosphere(2), 4)}));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 2u);
+  EXPECT_NEAR(bodies.bodies[0].share, 0.8, 1e-9);
+  EXPECT_NEAR(bodies.bodies[1].share, 0.2, 1e-9);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[0], 200), 160u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 200), 40u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 50), 30u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 10), 10u);
+  std::vector<uint32_t> faces = bodies.bodies[0].faces;
+  faces.insert(faces.end(), bodies.bodies[1].faces.begin(),
+               bodies.bodies[1].faces.end());
+  std::sort(faces.begin(), faces.end());
+  EXPECT_EQ(faces, bodies.anchors);
+}
+
+TEST(BodiesTest, TheSmallIsAttachedToTheNearestFace) {
+  const TriangleMesh eye = Scaled(Icosphere(0), 0.05);
+  CanonicalMesh mesh = CanonicalOf(
+      Together({Icosphere(2), MovedTo(eye, 1.5), MovedTo(eye, -1.5)}));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 1u);
+  EXPECT_FALSE(bodies.IsWhole());
+  EXPECT_EQ(mesh.report.attached_components, 2u);
+  EXPECT_EQ(mesh.report.attached_faces, 40u);
+  EXPECT_EQ(mesh.report.body_vertices, 162u);
+  for (uint32_t f = 0; f < mesh.mesh.NumFaces(); ++f) {
+    const uint32_t anchor = bodies.anchors[f];
+    EXPECT_EQ(bodies.anchors[anchor], anchor);
+    const double x = mesh.mesh.Position(mesh.mesh.faces[f][0]).x();
+    if (anchor == f) continue;
+    EXPECT_GT(x * mesh.mesh.Position(mesh.mesh.faces[anchor][0]).x(), 0.8);
+  }
+}
+
+// A creature of plates: each is a speck, together they are all there is.
+TEST(BodiesTest, ManyLightComponentsOfWeightAreBridged) {
+  std::vector<TriangleMesh> plates;
+  for (int i = 0; i < 400; ++i) {
+    plates.push_back(MovedTo(Grid(4, 4), 4.2 * (i % 20)));
+    plates.back().positions.col(1).array() += 4.2 * (i / 20);
+  }
+  CanonicalMesh mesh = CanonicalOf(Together(plates));
+  EXPECT_TRUE(FindBodies(mesh).IsWhole());
+  EXPECT_EQ(mesh.report.bridged_components, 400u);
+}
+
+TEST(BodiesTest, ThereAreNeverManyBodies) {
+  std::vector<TriangleMesh> debris;
+  for (int i = 0; i < 100; ++i) {
+    debris.push_back(MovedTo(Icosphere(0), 10 * (i % 5)));
+    debris.back().positions.col(1).array() += 10 * (i / 5 % 5);
+    debris.back().positions.col(2).array() += 10 * (i / 25);
+  }
+  CanonicalMesh mesh = CanonicalOf(Together(debris));
+  const Bodies bodies = FindBodies(mesh);
+  EXPECT_EQ(bodies.bodies.size(), kMaxBodies);
+  EXPECT_EQ(mesh.report.attached_components, 100u - kMaxBodies);
+}
+
+TEST(BodiesTest, AnyScaleGivesTheSame) {
+  const TriangleMesh mesh = Together(
+      {Icosphere(3), MovedTo(Icosphere(3), 2.01),
+       MovedTo(Scaled(Icosphere(0), 0.01), 4)});
+  CanonicalMesh unit = CanonicalOf(mesh);
+  const Bodies expected = FindBodies(unit);
+  for (double factor : {0x1p-66, 0x1p66}) {
+    CanonicalMesh scaled = CanonicalOf(Scaled(mesh, factor));
+    const Bodies bodies = FindBodies(scaled);
+    EXPECT_EQ(bodies.anchors, expected.anchors);
+    EXPECT_EQ(bodies.bodies[0].bridges, expected.bodies[0].bridges);
+  }
+}
+
+// Dust: one speck is as good as another, and 100,000 cost next to nothing.
+TEST(BodiesTest, DustStaysQuick) {
+  constexpr uint32_t kCount = 100'000;
+  const TriangleMesh speck = Tetrahedron();
+  std::mt19937 random(5);
+  TriangleMesh dust;
+  dust.positions.resize(4 * kCount, 3);
+  for (uint32_t i = 0; i < kCount; ++i) {
+    Eigen::RowVector3d place;
+    for (int axis = 0; axis < 3; ++axis)
+      place[axis] = 1000 * (random() * 0x1p-32);
+    for (uint32_t v = 0; v < 4; ++v)
+      dust.positions.row(4 * i + v) = speck.positions.row(v) + place;
+    for (const Triangle& f : speck.faces)
+      dust.faces.push_back({4 * i + f[0], 4 * i + f[1], 4 * i + f[2]});
+  }
+  CanonicalMesh mesh = CanonicalOf(dust);
+  const auto start = std::chrono::steady_clock::now();
+  const Bodies bodies = FindBodies(mesh);
+  // Takes 0.3 s, and a sanitizer ten times that.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+  ASSERT_EQ(bodies.bodies.size(), 1u);
+  EXPECT_EQ(mesh.report.body_vertices, 4u);
+  EXPECT_EQ(mesh.report.attached_components, kCount - 1);
+}
+
+}  // namespace
+}  // namespace marrow
