@@ -73,9 +73,9 @@ bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count) {
 
 absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
                                                 const Inspection& inspection) {
-  MARROW_ASSIGN_OR_RETURN(
-      CanonicalMesh mesh, context.engine.load_mesh(*inspection.payload.bytes,
-                                                   context.options.mesh_limits));
+  MARROW_ASSIGN_OR_RETURN(CanonicalMesh mesh, context.engine.load_mesh(
+                                                  *inspection.payload.bytes,
+                                                  context.options.mesh_limits));
   const uint32_t count = inspection.eigen_pairs;
   v1::InspectMeshResponse response;
   response.set_spectrum_cached(IsCached(context, mesh, count));

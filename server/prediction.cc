@@ -4,8 +4,7 @@
 
 namespace marrow {
 
-Prediction PredictSegmentation(const MeshReport& report,
-                               uint32_t eigen_pairs) {
+Prediction PredictSegmentation(const MeshReport& report, uint32_t eigen_pairs) {
   // Decoding, welding and splitting, on a machine of today; measured like
   // PredictSolverSeconds().
   constexpr double kSecondsAFace = 2e-5;

@@ -35,8 +35,8 @@ class Planter {
  private:
   void AddRoot(const SegmentTree& largest) {
     SegmentNode& root = result_.nodes.emplace_back();
-    root.medial_structure = ToWhole(largest.nodes[0].medial_structure,
-                                    bodies_.bodies[0].vertices);
+    root.medial_structure =
+        ToWhole(largest.nodes[0].medial_structure, bodies_.bodies[0].vertices);
     root.faces.resize(bodies_.anchors.size());
     std::iota(root.faces.begin(), root.faces.end(), 0u);
     MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, root);

@@ -116,8 +116,7 @@ std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
     sets.Union(part_of_vertex[main.vertices[u]],
                part_of_vertex[main.vertices[v]]);
   std::vector<Part> joined;
-  for (const auto& group :
-       GroupBy(static_cast<uint32_t>(parts.size()), sets)) {
+  for (const auto& group : GroupBy(static_cast<uint32_t>(parts.size()), sets)) {
     Part& body = joined.emplace_back(std::move(parts[group[0]]));
     for (size_t i = 1; i < group.size(); ++i) {
       const Part& part = parts[group[i]];

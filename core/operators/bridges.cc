@@ -150,8 +150,8 @@ class BodyTree {
   void Consider(uint32_t from, uint32_t to, Candidate& best) const {
     if ((*body_)[to] == (*body_)[from]) return;
     const Eigen::RowVector3d apart = points_.row(to) - points_.row(from);
-    best = std::min(best, Candidate{Square(apart), {std::min(from, to),
-                                                    std::max(from, to)}});
+    best = std::min(best, Candidate{Square(apart),
+                                    {std::min(from, to), std::max(from, to)}});
   }
 
   Positions points_;
@@ -237,8 +237,8 @@ std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
   UnitPoints box = ToUnitBox(mesh);
   const double near = UnitBridgingDistance(mesh, box.points);
   BodyTree tree(std::move(box.points));
-  std::vector<Bridge> bridges = Span(tree, sets, n, components,
-                                     std::numeric_limits<double>::infinity());
+  std::vector<Bridge> bridges =
+      Span(tree, sets, n, components, std::numeric_limits<double>::infinity());
   const std::vector<uint32_t> component = Representatives(n, sets);
   tree.SetBodies(component);
   for (uint32_t v = 0; v < n; ++v) {

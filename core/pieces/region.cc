@@ -109,10 +109,9 @@ std::vector<uint32_t> Region::AllFaces() const {
   return all;
 }
 
-std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
-                                      const std::vector<uint32_t>& labels,
-                                      std::span<const std::array<uint32_t, 2>>
-                                          links) {
+std::vector<uint32_t> ConnectedPieces(
+    const Adjacency& adjacency, const std::vector<uint32_t>& labels,
+    std::span<const std::array<uint32_t, 2>> links) {
   DisjointSets sets(adjacency.NumFaces());
   std::vector<std::pair<uint32_t, uint32_t>> around;  // label, face
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {

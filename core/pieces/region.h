@@ -63,12 +63,11 @@ class Region {
 };
 
 // Face -> number of its connected piece among faces of equal label. Faces are
-// connected through edges and links. Pieces are numbered by their least face. Linear in
-// the size of the mesh but for sorting at edges of many faces.
-std::vector<uint32_t> ConnectedPieces(const Adjacency& adjacency,
-                                      const std::vector<uint32_t>& labels,
-                                      std::span<const std::array<uint32_t, 2>>
-                                          links = {});
+// connected through edges and links. Pieces are numbered by their least face.
+// Linear in the size of the mesh but for sorting at edges of many faces.
+std::vector<uint32_t> ConnectedPieces(
+    const Adjacency& adjacency, const std::vector<uint32_t>& labels,
+    std::span<const std::array<uint32_t, 2>> links = {});
 
 }  // namespace marrow
 

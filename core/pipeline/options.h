@@ -11,7 +11,7 @@
 namespace marrow {
 
 // Changes whenever equal requests may give other answers.
-inline constexpr char kAlgorithmRevision[] = "paper/1";
+inline constexpr char kAlgorithmRevision[] = "paper/2";
 
 struct SegmentationOptions {
   SplitOptions split;

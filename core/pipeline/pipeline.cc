@@ -82,7 +82,9 @@ struct Prepared {
 };
 
 Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies) {
-  Prepared prepared{canonical, bodies, Adjacency(canonical.mesh),
+  Prepared prepared{canonical,
+                    bodies,
+                    Adjacency(canonical.mesh),
                     FaceAreaShares(canonical.mesh),
                     {}};
   for (const Body& body : bodies.bodies)
@@ -110,11 +112,15 @@ absl::Status EmitLevel(const Prepared& prepared, const SegmentTree& tree,
 // Where the work on a body stands.
 class BodyTree {
  public:
-  BodyTree(const Body& body, std::shared_ptr<const EigenPairs> pairs,
-           const SplitOptions& options)
+  // Of a mesh that is one body, what is prepared is used again.
+  BodyTree(const Prepared& prepared, const Body& body,
+           std::shared_ptr<const EigenPairs> pairs, const SplitOptions& options)
       : share_(body.share),
-        adjacency_(body.canonical->mesh),
-        areas_(FaceAreaShares(body.canonical->mesh)),
+        own_(prepared.bodies.IsWhole()
+                 ? nullptr
+                 : std::make_unique<Own>(body.canonical->mesh)),
+        adjacency_(own_ ? own_->adjacency : prepared.adjacency),
+        areas_(own_ ? own_->areas : prepared.areas),
         pairs_(std::move(pairs)),
         builder_({body.canonical->mesh, adjacency_, *pairs_, areas_,
                   FaceLinks(adjacency_, body.bridges)},
@@ -137,9 +143,17 @@ class BodyTree {
   const SegmentTree& tree() const { return builder_.tree(); }
 
  private:
+  struct Own {
+    explicit Own(const TriangleMesh& mesh)
+        : adjacency(mesh), areas(FaceAreaShares(mesh)) {}
+    const Adjacency adjacency;
+    const std::vector<double> areas;
+  };
+
   const double share_;
-  const Adjacency adjacency_;
-  const std::vector<double> areas_;
+  const std::unique_ptr<const Own> own_;
+  const Adjacency& adjacency_;
+  const std::vector<double>& areas_;
   const std::shared_ptr<const EigenPairs> pairs_;
   TreeBuilder builder_;
   bool done_ = false;
@@ -153,8 +167,8 @@ class Forest {
          const SplitOptions& options)
       : prepared_(prepared) {
     for (size_t b = 0; b < pairs.size(); ++b)
-      bodies_.push_back(std::make_unique<BodyTree>(prepared.bodies.bodies[b],
-                                                   pairs[b], options));
+      bodies_.push_back(std::make_unique<BodyTree>(
+          prepared, prepared.bodies.bodies[b], pairs[b], options));
     Plant();
   }
 

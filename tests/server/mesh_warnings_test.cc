@@ -45,14 +45,12 @@ TEST(FindingsTest, TellOfMoreThanWarnings) {
   std::vector<std::pair<std::string, uint32_t>> counts;
   for (const v1::Finding& finding : findings) {
     counts.push_back({finding.code(), finding.count()});
-    EXPECT_THAT(finding.message(),
-                StartsWith(std::to_string(finding.count())));
+    EXPECT_THAT(finding.message(), StartsWith(std::to_string(finding.count())));
   }
-  EXPECT_THAT(counts, ElementsAre(Pair("WELDED_POINTS", 9),
-                                  Pair("DEGENERATE_FACES", 4),
-                                  Pair("SLIVER_FACES", 2),
-                                  Pair("FLIPPED_FACES", 3),
-                                  Pair("BOUNDARIES", 1)));
+  EXPECT_THAT(counts,
+              ElementsAre(Pair("WELDED_POINTS", 9), Pair("DEGENERATE_FACES", 4),
+                          Pair("SLIVER_FACES", 2), Pair("FLIPPED_FACES", 3),
+                          Pair("BOUNDARIES", 1)));
   EXPECT_THAT(WarningsAbout(report), SizeIs(1));
 }
 

@@ -76,8 +76,8 @@ TEST_F(SegmentTest, WarningsAboutTheMeshFollowItsReport) {
             "accepted mesh_report warning level labels completed ");
   for (const v1::SegmentEvent& event : answer.events) {
     if (!event.has_warning()) continue;
-    EXPECT_EQ(event.warning().code(), "COMPONENTS_BRIDGED");
-    EXPECT_THAT(event.warning().message(), ::testing::HasSubstr("2 pieces"));
+    EXPECT_EQ(event.warning().code(), "SEVERAL_BODIES");
+    EXPECT_THAT(event.warning().message(), ::testing::HasSubstr("2 bodies"));
   }
 }
 

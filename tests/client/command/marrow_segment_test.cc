@@ -348,14 +348,14 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
             "5 5 5\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 5 6\n");
   const Finished run = Segment({folder_ / "two.off"});
   EXPECT_EQ(run.code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is in 2 pieces"));
+  EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is 2 bodies"));
   const json result = json::parse(ReadFile(Out("two.json")));
   std::vector<std::string> codes;
   for (const json& warning : result["report"]["warnings"]) {
     codes.push_back(warning["code"]);
     EXPECT_FALSE(warning["message"].get<std::string>().empty());
   }
-  EXPECT_THAT(codes, ElementsAre("COMPONENTS_BRIDGED", "UNUSED_POINTS"));
+  EXPECT_THAT(codes, ElementsAre("UNUSED_POINTS", "SEVERAL_BODIES"));
 
   const Finished events = Segment({folder_ / "two.off", "--json", "--quiet"});
   EXPECT_THAT(events.out, HasSubstr("\"event\":\"warning\""));

@@ -115,8 +115,8 @@ TEST(MarrowTest, InspectTellsWhatWillBeDone) {
   const Finished person = Marrow({"inspect", folder / "t.off"});
   EXPECT_THAT(person.out, HasSubstr("1 face is turned against"));
   EXPECT_THAT(person.out, HasSubstr("1 hole or open border"));
-  const json report =
-      json::parse(Marrow({"inspect", folder / "t.off", "--json"}).out)["report"];
+  const json report = json::parse(
+      Marrow({"inspect", folder / "t.off", "--json"}).out)["report"];
   EXPECT_EQ(report["flipped_faces"], 1);
   EXPECT_TRUE(report["genus"].is_null());
   EXPECT_EQ(report["findings"][0]["code"], "FLIPPED_FACES");

@@ -15,9 +15,8 @@ Orientation Check(const TriangleMesh& mesh) {
 void Flip(Triangle& face) { std::swap(face[1], face[2]); }
 
 TEST(OrientationTest, CleanMeshesAgree) {
-  for (const TriangleMesh& mesh :
-       {Icosphere(2), Torus(2, 0.5, 20, 10), Disk(4),
-        Apart(Tetrahedron(), Disk(2))}) {
+  for (const TriangleMesh& mesh : {Icosphere(2), Torus(2, 0.5, 20, 10), Disk(4),
+                                   Apart(Tetrahedron(), Disk(2))}) {
     EXPECT_EQ(Check(mesh).flipped_faces, 0u);
     EXPECT_TRUE(Check(mesh).orientable);
   }

@@ -53,8 +53,8 @@ TEST(BodiesTest, NearShellsAreOne) {
 }
 
 TEST(BodiesTest, FarShellsAreSeveralTheLargestFirst) {
-  CanonicalMesh mesh = CanonicalOf(Together(
-      {Scaled(Icosphere(2), 0.5), MovedTo(Icosphere(2), 4)}));
+  CanonicalMesh mesh = CanonicalOf(
+      Together({Scaled(Icosphere(2), 0.5), MovedTo(Icosphere(2), 4)}));
   const Bodies bodies = FindBodies(mesh);
   ASSERT_EQ(bodies.bodies.size(), 2u);
   EXPECT_NEAR(bodies.bodies[0].share, 0.8, 1e-9);
@@ -115,9 +115,8 @@ TEST(BodiesTest, ThereAreNeverManyBodies) {
 }
 
 TEST(BodiesTest, AnyScaleGivesTheSame) {
-  const TriangleMesh mesh = Together(
-      {Icosphere(3), MovedTo(Icosphere(3), 2.01),
-       MovedTo(Scaled(Icosphere(0), 0.01), 4)});
+  const TriangleMesh mesh = Together({Icosphere(3), MovedTo(Icosphere(3), 2.01),
+                                      MovedTo(Scaled(Icosphere(0), 0.01), 4)});
   CanonicalMesh unit = CanonicalOf(mesh);
   const Bodies expected = FindBodies(unit);
   for (double factor : {0x1p-66, 0x1p66}) {

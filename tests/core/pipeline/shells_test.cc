@@ -63,10 +63,10 @@ TriangleMesh CutAtJoints(const CreatureMesh& creature, double gap) {
     for (int i = 0; i < 3; ++i)
       face[i] = own.at({creature.parts[f], whole.faces[f][i]});
     cut.faces.push_back(face);
-    const Eigen::RowVector3d centre = (cut.positions.row(face[0]) +
-                                       cut.positions.row(face[1]) +
-                                       cut.positions.row(face[2])) /
-                                      3;
+    const Eigen::RowVector3d centre =
+        (cut.positions.row(face[0]) + cut.positions.row(face[1]) +
+         cut.positions.row(face[2])) /
+        3;
     for (uint32_t v : face) inward.row(v) += centre - cut.positions.row(v);
   }
   for (const auto& [key, id] : own)
@@ -122,17 +122,17 @@ TEST_P(ShellsTest, CutAtTheJointsAreOneBody) {
     EXPECT_GT(run.mesh.report.components, 4u);
     EXPECT_EQ(run.mesh.report.bodies, 1u);
     EXPECT_EQ(run.mesh.report.bridged_components, run.mesh.report.components);
-    EXPECT_LE(RandIndexDifference(FirstOf(run.levels[0].face_labels,
-                                          creature.mesh.NumFaces()),
-                                  whole.levels[0].face_labels),
+    EXPECT_LE(RandIndexDifference(
+                  FirstOf(run.levels[0].face_labels, creature.mesh.NumFaces()),
+                  whole.levels[0].face_labels),
               tolerance);
   }
 }
 
 TEST_P(ShellsTest, SkeletonsConnectAcrossThem) {
   const CreatureMesh creature = MakeCreature(GetParam());
-  const RecordingSink run = RunOn(
-      CutAtJoints(creature, 0.005 * Diagonal(creature.mesh)), Levels(1));
+  const RecordingSink run =
+      RunOn(CutAtJoints(creature, 0.005 * Diagonal(creature.mesh)), Levels(1));
   const RecordingSink::Level& level = run.levels[0];
   // Every bone has an articulation at its gap, or inside of a shell.
   EXPECT_EQ(level.skeleton.joints.size(),
@@ -207,15 +207,16 @@ TriangleMesh Together(const TriangleMesh& a, const TriangleMesh& b) {
 TEST(BodiesTest, TwoCreaturesAreChildrenOfTheRoot) {
   const TriangleMesh octopus = MakeCreature("octopus").mesh;
   const TriangleMesh hand = Scaled(MakeCreature("hand").mesh, 0.7);
-  const TriangleMesh mesh = Together(
-      octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
+  const TriangleMesh mesh =
+      Together(octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
   const RecordingSink run = RunOn(mesh, Levels(2));
   EXPECT_EQ(run.mesh.report.bodies, 2u);
   ASSERT_EQ(run.levels.size(), 2u);
   const auto& first = run.levels[0].face_labels;
   EXPECT_EQ(std::set<uint32_t>(first.begin(), first.end()).size(), 2u);
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
-    EXPECT_EQ(first[f], first[f < octopus.NumFaces() ? 0 : mesh.NumFaces() - 1]);
+    EXPECT_EQ(first[f],
+              first[f < octopus.NumFaces() ? 0 : mesh.NumFaces() - 1]);
   ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
                   run.mesh.report.area, true);
 
@@ -235,10 +236,9 @@ TEST(BodiesTest, AnEyeFollowsTheHead) {
   creature.mesh.positions.col(1).maxCoeff(&top);
   const double diagonal = Diagonal(creature.mesh);
   const TriangleMesh mesh = Together(
-      creature.mesh,
-      Moved(Scaled(Icosphere(2), 0.01 * diagonal),
-            creature.mesh.positions.row(top) +
-                Eigen::RowVector3d(0, 0.06 * diagonal, 0)));
+      creature.mesh, Moved(Scaled(Icosphere(2), 0.01 * diagonal),
+                           creature.mesh.positions.row(top) +
+                               Eigen::RowVector3d(0, 0.06 * diagonal, 0)));
   const RecordingSink run = RunOn(mesh, Levels(3));
   EXPECT_EQ(run.mesh.report.attached_components, 1u);
   const Adjacency adjacency(creature.mesh);
