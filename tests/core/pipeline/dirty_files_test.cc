@@ -30,7 +30,7 @@ const std::map<std::string, Outcome>& Outcomes() {
       {"multiple_isolated_triangles.obj", Segments(1, 10)},
       {"multiple_tetrahedrons.obj", Segments(1, 10)},
       {"non_manifold_wrap.obj", Segments(1, 10)},
-      {"ogre_44_components.obj", Segments(2, 200)},
+      {"ogre_44_components.obj", Segments(5, 60)},
       {"suzanne.obj", Segments(2, 200)},
       {"test_nm.obj", Segments(1, 60)},
   };
