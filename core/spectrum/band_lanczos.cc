@@ -123,7 +123,7 @@ class BandFinder {
         request_.above == 0
             ? 0
             : Pick(above_, request_.above, request_.any_end_above, distance);
-    num_below_ = Pick(below_, request_.below, request_.all_below, distance);
+    num_below_ = Pick(below_, request_.below, request_.any_end_below, distance);
     return num_above_ >= 0 && num_below_ >= 0;
   }
 
@@ -192,7 +192,7 @@ class BandFinder {
       band.values.push_back(above_.value[i]);
     }
     band.next_above = NextAbove();
-    band.next_below = request_.all_below || !HasNext(below_, num_below_)
+    band.next_below = request_.any_end_below || !HasNext(below_, num_below_)
                           ? -kInfinity
                           : below_.value[num_below_];
     MARROW_RETURN_IF_ERROR(WriteVectors(Coefficients(chosen), band));

@@ -18,8 +18,10 @@ struct BandRequest {
   // How many pairs are wanted on either side of the shift, the nearest first.
   int below = 0;
   int above = 0;
-  // Whether `below` is all there are.
+  // Whether `below` is all there are, so that the lowest is lambda_0.
   bool all_below = false;
+  // Whether the pairs may begin inside a cluster: a count is known there.
+  bool any_end_below = false;
   // Whether the pairs may end inside a cluster above.
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.

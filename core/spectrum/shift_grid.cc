@@ -101,6 +101,7 @@ absl::Status ShiftGrid::Plan(SupernodalFactor& factor,
   band.request.tolerance = tolerance_;
   band.request.below = band.below_shift - covered_;
   band.request.all_below = covered_ == 0;
+  band.request.any_end_below = covered_ == last_below_;
   const int missing = pairs_ - band.below_shift;
   int above = missing <= kLastBand * wanted_ ? missing : wanted_ / 2;
   if (cluster_end > 0) above = std::min(missing, cluster_end - band.below_shift);
