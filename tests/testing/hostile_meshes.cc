@@ -282,7 +282,7 @@ void AddManyPieces(bool full, Cases& cases) {
       cases.end(),
       {{"c70_isolated_vertices",
         [=] {
-          return full ? WithIsolatedVertices(Icosphere(6), 100'000)
+          return full ? WithIsolatedVertices(LimbCross(12), 100'000)
                       : WithIsolatedVertices(LimbCross(2), 2'500);
         }},
        // More than three a face: Draco's sequential files cannot hold them.
