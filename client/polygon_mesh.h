@@ -7,18 +7,22 @@
 #ifndef MARROW_CLIENT_POLYGON_MESH_H_
 #define MARROW_CLIENT_POLYGON_MESH_H_
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace marrow {
 
 struct PolygonMesh {
-  // Vertex positions in the file's units. May hold NaN or infinities where
-  // the file does: judging them is the server's business.
-  std::vector<std::array<float, 3>> positions;
+  // Vertex positions in the file's units. All are floats, unless the file holds
+  // one that is not. May hold NaN or infinities where the file does: judging
+  // them is the server's business.
+  std::vector<std::array<double, 3>> positions;
 
   // Face f has the corners face_vertices[face_offsets[f] .. face_offsets[f+1]).
   // face_offsets has one entry more than there are faces and begins with 0.
@@ -43,6 +47,28 @@ struct PolygonMesh {
     face_offsets.push_back(static_cast<uint32_t>(face_vertices.size()));
   }
 };
+
+// Whether a float holds x; what is not finite, it does.
+inline bool IsFloat(double x) {
+  if (!std::isfinite(x)) return true;
+  return std::abs(x) <= std::numeric_limits<float>::max() &&
+         static_cast<double>(static_cast<float>(x)) == x;
+}
+
+inline bool AreFloats(const std::vector<std::array<double, 3>>& positions) {
+  return std::all_of(positions.begin(), positions.end(), [](const auto& p) {
+    return IsFloat(p[0]) && IsFloat(p[1]) && IsFloat(p[2]);
+  });
+}
+
+// The nearest float, an infinity for what is beyond all.
+inline float ToFloat(double x) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  // Half a step beyond the largest float: from there on, infinity is nearer.
+  constexpr double kBeyond = 0x1.ffffffp127;
+  if (std::abs(x) >= kBeyond) return x > 0 ? kInfinity : -kInfinity;
+  return static_cast<float>(x);
+}
 
 }  // namespace marrow
 

@@ -66,7 +66,23 @@ void AddSiteNumbers(const PointMesh& points, draco::Mesh* mesh) {
                points.point_site, mesh);
 }
 
-std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points,
+void AddPositions(const PointMesh& points, bool narrow, draco::Mesh* mesh) {
+  if (!narrow) {
+    AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT64,
+                 points.sites.rows, points.point_site, mesh);
+    return;
+  }
+  std::vector<std::array<float, 3>> rows;
+  rows.reserve(points.sites.rows.size());
+  for (const auto& [x, y, z] : points.sites.rows) {
+    rows.push_back({ToFloat(x), ToFloat(y), ToFloat(z)});
+  }
+  AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, rows,
+               points.point_site, mesh);
+}
+
+// `narrow`: positions become floats.
+std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points, bool narrow,
                                      bool number_sites) {
   auto mesh = std::make_unique<draco::Mesh>();
   mesh->set_num_points(static_cast<uint32_t>(points.point_site.size()));
@@ -77,8 +93,7 @@ std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points,
                   {draco::PointIndex(c[0]), draco::PointIndex(c[1]),
                    draco::PointIndex(c[2])});
   }
-  AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32,
-               points.sites.rows, points.point_site, mesh.get());
+  AddPositions(points, narrow, mesh.get());
   if (!points.uvs.rows.empty()) {
     AddAttribute(draco::GeometryAttribute::TEX_COORD, draco::DT_FLOAT32,
                  points.uvs.rows, points.point_uv, mesh.get());
@@ -94,7 +109,11 @@ std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points,
 absl::StatusOr<std::string> RunEncoder(const PointMesh& points,
                                        const EncodeOptions& options,
                                        EncodeMethod method, bool number_sites) {
-  const std::unique_ptr<draco::Mesh> mesh = ToDraco(points, number_sites);
+  // Draco quantizes floats alone.
+  const bool narrow =
+      options.quantization_bits > 0 || AreFloats(points.sites.rows);
+  const std::unique_ptr<draco::Mesh> mesh =
+      ToDraco(points, narrow, number_sites);
   draco::ExpertEncoder encoder(*mesh);
   encoder.SetSpeedOptions(options.speed, options.speed);
   encoder.SetEncodingMethod(method == EncodeMethod::kEdgebreaker
@@ -117,8 +136,9 @@ absl::StatusOr<std::string> RunEncoder(const PointMesh& points,
 
 // What a payload decodes to, as far as the order goes.
 struct Decoded {
-  std::vector<Corners> faces;                      // points
-  std::vector<std::array<uint32_t, 3>> positions;  // bits, by point
+  std::vector<Corners> faces;  // points
+  // Bits, by point: of three doubles, or of three floats and zeros behind.
+  std::vector<std::array<uint64_t, 3>> positions;
   std::vector<uint32_t> point_site;  // empty where sites are not numbered
 };
 
@@ -288,9 +308,10 @@ absl::Status CheckOptions(const EncodeOptions& options) {
   return absl::OkStatus();
 }
 
-bool IsFinite(const std::vector<std::array<float, 3>>& positions) {
+bool AreFiniteAsFloats(const std::vector<std::array<double, 3>>& positions) {
   return std::all_of(positions.begin(), positions.end(), [](const auto& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    return std::isfinite(ToFloat(p[0])) && std::isfinite(ToFloat(p[1])) &&
+           std::isfinite(ToFloat(p[2]));
   });
 }
 
@@ -309,7 +330,7 @@ absl::StatusOr<EncodedMesh> EncodeChecked(const PolygonMesh& mesh,
   }
   const PointMesh points =
       BuildPointMesh(mesh, triangles, options.keep_attributes);
-  if (!IsFinite(points.sites.rows)) options.quantization_bits = 0;
+  if (!AreFiniteAsFloats(points.sites.rows)) options.quantization_bits = 0;
 
   if (options.method != EncodeMethod::kAuto) {
     return EncodePoints(mesh, triangles, points, options, options.method);

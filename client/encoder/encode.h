@@ -19,8 +19,9 @@ struct EncodeOptions {
   // faces that edgebreaker takes quadratic time.
   EncodeMethod method = EncodeMethod::kAuto;
   int speed = 5;  // 0 (smallest) to 10 (quickest), both for encode and decode
-  // Bits a coordinate, 1 to 30; 0 sends the floats as they are. A mesh with a
-  // coordinate that is not finite is sent as it is in any case.
+  // Bits a coordinate, 1 to 30; 0 sends the numbers as they are: floats, or
+  // doubles where there is a coordinate that is no float. A mesh with a
+  // coordinate that is not finite as a float is sent as it is in any case.
   int quantization_bits = 0;
   bool keep_attributes = false;  // send texture coordinates and normals too
 };

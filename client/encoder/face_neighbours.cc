@@ -107,8 +107,7 @@ using Centres = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 Eigen::RowVector3d Centre(const PolygonMesh& mesh, size_t f) {
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
   for (const uint32_t v : mesh.Face(f)) {
-    sum += Eigen::Map<const Eigen::RowVector3f>(mesh.positions[v].data())
-               .cast<double>();
+    sum += Eigen::Map<const Eigen::RowVector3d>(mesh.positions[v].data());
   }
   if (!mesh.Face(f).empty()) sum /= static_cast<double>(mesh.Face(f).size());
   return sum.allFinite() ? sum : Eigen::RowVector3d::Zero();

@@ -24,7 +24,7 @@ PolygonMesh ToPolygons(const DecodedMesh& decoded) {
   PolygonMesh mesh;
   mesh.positions.reserve(static_cast<size_t>(decoded.positions.rows()));
   for (Eigen::Index i = 0; i < decoded.positions.rows(); ++i) {
-    const Eigen::RowVector3f point = decoded.positions.row(i).cast<float>();
+    const Eigen::RowVector3d point = decoded.positions.row(i);
     mesh.positions.push_back({point.x(), point.y(), point.z()});
   }
   for (const Triangle& face : decoded.faces) mesh.AddFace(face);

@@ -21,7 +21,7 @@ using client::kNone;
 double Area(const PolygonMesh& mesh, const std::array<uint32_t, 3>& triangle) {
   std::array<Eigen::Vector3d, 3> p;
   for (int i = 0; i < 3; ++i) {
-    p[i] = Eigen::Vector3f(mesh.positions[triangle[i]].data()).cast<double>();
+    p[i] = Eigen::Vector3d(mesh.positions[triangle[i]].data());
   }
   const double area = (p[1] - p[0]).cross(p[2] - p[0]).norm() / 2;
   return std::isfinite(area) ? area : 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <span>
+#include <type_traits>
 
 #include "absl/container/flat_hash_map.h"
 #include "client/mesh_file/triangulate.h"
@@ -10,15 +11,16 @@
 namespace marrow {
 namespace {
 
-template <size_t N>
-DistinctRows<N> FindDistinct(const std::vector<std::array<float, N>>& input) {
-  DistinctRows<N> distinct;
+template <typename T, size_t N>
+DistinctRows<T, N> FindDistinct(const std::vector<std::array<T, N>>& input) {
+  using Bits = std::conditional_t<sizeof(T) == 8, uint64_t, uint32_t>;
+  DistinctRows<T, N> distinct;
   distinct.index.reserve(input.size());
-  absl::flat_hash_map<std::array<uint32_t, N>, uint32_t> seen;
+  absl::flat_hash_map<std::array<Bits, N>, uint32_t> seen;
   seen.reserve(input.size());
-  for (const std::array<float, N>& row : input) {
+  for (const std::array<T, N>& row : input) {
     const auto [entry, is_new] =
-        seen.try_emplace(std::bit_cast<std::array<uint32_t, N>>(row),
+        seen.try_emplace(std::bit_cast<std::array<Bits, N>>(row),
                          static_cast<uint32_t>(distinct.rows.size()));
     if (is_new) distinct.rows.push_back(row);
     distinct.index.push_back(entry->second);

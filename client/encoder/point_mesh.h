@@ -14,11 +14,11 @@ namespace marrow {
 
 using Corners = std::array<uint32_t, 3>;
 
-// Rows of floats with equal ones (to the bit) put together, in order of first
+// Rows of numbers with equal ones (to the bit) put together, in order of first
 // appearance.
-template <size_t N>
+template <typename T, size_t N>
 struct DistinctRows {
-  std::vector<std::array<float, N>> rows;
+  std::vector<std::array<T, N>> rows;
   std::vector<uint32_t> index;  // an input row -> its place in `rows`
 };
 
@@ -30,9 +30,9 @@ struct CornerTriangles {
 };
 
 struct PointMesh {
-  DistinctRows<3> sites;  // of the file's vertices
-  DistinctRows<2> uvs;    // of corners; empty where not sent
-  DistinctRows<3> normals;
+  DistinctRows<double, 3> sites;  // of the file's vertices
+  DistinctRows<float, 2> uvs;     // of corners; empty where not sent
+  DistinctRows<float, 3> normals;
   std::vector<Corners> faces;         // points
   std::vector<Corners> site_corners;  // sites, parallel to faces
   std::vector<uint32_t> point_site;

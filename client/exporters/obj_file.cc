@@ -13,19 +13,21 @@
 namespace marrow {
 namespace {
 
-// The fewest digits that read back as the same float.
-void AppendFloat(float value, std::string& out) {
+// The fewest digits that read back as the same number.
+template <typename T>
+void AppendNumber(T value, std::string& out) {
   std::array<char, 32> digits;
   const auto end =
       std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
   out.append(digits.data(), end);
 }
 
-void AppendVertex(const std::array<float, 3>& position, std::string& out) {
+void AppendVertex(const std::array<double, 3>& position, bool floats,
+                  std::string& out) {
   out += 'v';
-  for (float x : position) {
+  for (double x : position) {
     out += ' ';
-    AppendFloat(x, out);
+    floats ? AppendNumber(ToFloat(x), out) : AppendNumber(x, out);
   }
   out += '\n';
 }
@@ -61,12 +63,13 @@ absl::StatusOr<std::string> PartsObjFile(
   const std::vector<ExportedFace> faces =
       FacesByLabel(mesh, face_labels, split);
   std::string obj = "# One object a segment, by Marrow\n";
+  const bool floats = AreFloats(mesh.positions);
   size_t v = 0;
   for (size_t f = 0; f < faces.size();) {
     const uint32_t label = faces[f].label;
     absl::StrAppend(&obj, "o segment_", label, "\n");
     for (; v < split.vertices.size() && split.vertices[v].label == label; ++v) {
-      AppendVertex(mesh.positions[split.vertices[v].vertex], obj);
+      AppendVertex(mesh.positions[split.vertices[v].vertex], floats, obj);
     }
     for (; f < faces.size() && faces[f].label == label; ++f) {
       obj += 'f';

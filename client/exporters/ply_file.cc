@@ -11,10 +11,14 @@
 namespace marrow {
 namespace {
 
-void AppendUint32(uint32_t value, std::string& out) {
-  for (int shift = 0; shift < 32; shift += 8) {
-    out.push_back(static_cast<char>(value >> shift));
+void AppendBytes(uint64_t value, int bytes, std::string& out) {
+  for (int i = 0; i < bytes; ++i) {
+    out.push_back(static_cast<char>(value >> (8 * i)));
   }
+}
+
+void AppendUint32(uint32_t value, std::string& out) {
+  AppendBytes(value, 4, out);
 }
 
 void AppendColor(uint32_t label, std::string& out) {
@@ -24,13 +28,14 @@ void AppendColor(uint32_t label, std::string& out) {
   out.push_back(static_cast<char>(color.blue));
 }
 
-std::string Header(const LabelSplit& split, bool wide_count) {
+std::string Header(const LabelSplit& split, bool floats, bool wide_count) {
+  const std::string type = floats ? "float" : "double";
   const std::string colors =
       "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   return absl::StrCat(
       "ply\nformat binary_little_endian 1.0\ncomment Coloured by Marrow\n",
-      "element vertex ", split.vertices.size(), "\n",
-      "property float x\nproperty float y\nproperty float z\n", colors,
+      "element vertex ", split.vertices.size(), "\n", "property ", type,
+      " x\nproperty ", type, " y\nproperty ", type, " z\n", colors,
       "element face ", split.faces.size(), "\n", "property list ",
       wide_count ? "uint" : "uchar", " int vertex_indices\n", colors,
       "end_header\n");
@@ -44,10 +49,15 @@ absl::StatusOr<std::string> PlyFile(const PolygonMesh& mesh,
                           SplitByLabel(mesh, face_labels));
   bool wide_count = false;
   for (uint32_t f : split.faces) wide_count |= mesh.Face(f).size() > 255;
-  std::string ply = Header(split, wide_count);
+  const bool floats = AreFloats(mesh.positions);
+  std::string ply = Header(split, floats, wide_count);
   for (const auto& [label, vertex] : split.vertices) {
-    for (float x : mesh.positions[vertex]) {
-      AppendUint32(std::bit_cast<uint32_t>(x), ply);
+    for (double x : mesh.positions[vertex]) {
+      if (floats) {
+        AppendUint32(std::bit_cast<uint32_t>(ToFloat(x)), ply);
+      } else {
+        AppendBytes(std::bit_cast<uint64_t>(x), 8, ply);
+      }
     }
     AppendColor(label, ply);
   }

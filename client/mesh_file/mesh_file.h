@@ -28,7 +28,8 @@ absl::StatusOr<std::string> ReadFileBytes(const std::string& path);
 // in node, primitive, index order: the scene's nodes are walked depth first,
 // each with its transform. The mesh has at least one face, and every index is
 // in range. Numbers are read without regard to the locale and rounded
-// correctly; "nan" and "inf" are numbers.
+// correctly; "nan" and "inf" are numbers. Positions are doubles where the file
+// has them: a PLY by its types, a text by its digits (text_precision.h).
 //
 // Errors are those of ReadFileBytes and INVALID_ARGUMENT, whose message names
 // the file, the line or element, and what would help.
@@ -41,9 +42,10 @@ absl::StatusOr<PolygonMesh> ParseMesh(const std::string& path,
 
 // Writes .off, .obj, .ply (binary) or .stl (binary, polygons triangulated), as
 // the extension says, whole or not at all. Positions are written so that they
-// read back as the same floats. Texture coordinates and normals are not
-// written. Errors: INVALID_ARGUMENT for another extension or a mesh that the
-// format cannot hold, and those of WriteFileAtomically.
+// read back as the same numbers, but that an STL holds floats alone. Texture
+// coordinates and normals are not written. Errors: INVALID_ARGUMENT for another
+// extension or a mesh that the format cannot hold, and those of
+// WriteFileAtomically.
 absl::Status WriteMesh(const PolygonMesh& mesh, const std::string& path);
 
 }  // namespace marrow

@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "client/mesh_file/readers.h"
+#include "client/mesh_file/text_precision.h"
 #include "client/mesh_file/text_scanner.h"
 #include "core/base/status_macros.h"
 
@@ -33,8 +34,15 @@ class ObjReader {
   // may be at or over `count`.
   absl::Status ReadIndex(std::string_view token, size_t count, uint32_t* index);
   absl::Status CheckForwardReferences();
-  template <size_t N>
-  absl::Status ReadNumbers(std::vector<std::array<float, N>>* rows);
+  // A coordinate is a double; the others are floats.
+  bool Parse(std::string_view token, float* number) {
+    return ParseFloat(token, number);
+  }
+  bool Parse(std::string_view token, double* number) {
+    return precision_.Parse(token, number);
+  }
+  template <typename T, size_t N>
+  absl::Status ReadNumbers(std::vector<std::array<T, N>>* rows);
   template <size_t N>
   static std::vector<std::array<float, N>> Expand(
       const std::vector<std::array<float, N>>& rows,
@@ -47,6 +55,7 @@ class ObjReader {
   };
 
   TextScanner scanner_;
+  TextPrecision precision_;
   PolygonMesh mesh_;
   std::vector<std::array<float, 2>> uvs_;
   std::vector<std::array<float, 3>> normals_;
@@ -55,15 +64,15 @@ class ObjReader {
   std::vector<ForwardReference> forward_references_;
 };
 
-template <size_t N>
-absl::Status ObjReader::ReadNumbers(std::vector<std::array<float, N>>* rows) {
-  std::array<float, N> row = {};
-  for (float& number : row) {
+template <typename T, size_t N>
+absl::Status ObjReader::ReadNumbers(std::vector<std::array<T, N>>* rows) {
+  std::array<T, N> row = {};
+  for (T& number : row) {
     const std::string_view token = scanner_.NextToken();
     if (token.empty()) {
       return scanner_.Error(absl::StrCat("needs ", N, " numbers"));
     }
-    if (!ParseFloat(token, &number)) {
+    if (!Parse(token, &number)) {
       return scanner_.Error(absl::StrCat(Quoted(token), " is not a number"));
     }
   }
@@ -163,6 +172,7 @@ std::vector<std::array<float, N>> ObjReader::Expand(
 absl::StatusOr<PolygonMesh> ObjReader::Read() {
   while (scanner_.NextLine()) MARROW_RETURN_IF_ERROR(ReadLine());
   MARROW_RETURN_IF_ERROR(CheckForwardReferences());
+  precision_.Apply(&mesh_);
   mesh_.corner_uvs = Expand(uvs_, corner_uv_);
   mesh_.corner_normals = Expand(normals_, corner_normal_);
   return std::move(mesh_);

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "client/mesh_file/readers.h"
+#include "client/mesh_file/text_precision.h"
 #include "client/mesh_file/text_scanner.h"
 #include "core/base/status_macros.h"
 
@@ -25,6 +26,7 @@ class OffReader {
     MARROW_RETURN_IF_ERROR(ReadHeader());
     MARROW_RETURN_IF_ERROR(ReadVertices());
     MARROW_RETURN_IF_ERROR(ReadFaces());
+    precision_.Apply(&mesh_);
     return std::move(mesh_);
   }
 
@@ -42,6 +44,7 @@ class OffReader {
   bool homogeneous_ = false;  // 4OFF: x y z w, and the point is xyz / w
   int64_t num_vertices_ = 0;
   int64_t num_faces_ = 0;
+  TextPrecision precision_;
   PolygonMesh mesh_;
 };
 
@@ -100,10 +103,10 @@ absl::Status OffReader::ReadVertices() {
                                          num_vertices_,
                                          " vertices; it may be cut off"));
     }
-    std::array<float, 4> xyzw = {0, 0, 0, 1};
+    std::array<double, 4> xyzw = {0, 0, 0, 1};
     for (int i = 0; i < (homogeneous_ ? 4 : 3); ++i) {
       const std::string_view token = scanner_.NextTokenAcrossLines();
-      if (!ParseFloat(token, &xyzw[i])) {
+      if (!precision_.Parse(token, &xyzw[i])) {
         return scanner_.Error(absl::StrCat("vertex ", v, ": ", Quoted(token),
                                            " is not a coordinate"));
       }

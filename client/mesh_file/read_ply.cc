@@ -155,7 +155,7 @@ class TextReader final : public ValueReader {
  public:
   explicit TextReader(TextScanner* scanner) : scanner_(*scanner) {}
 
-  bool Next(Type, double* value) override {
+  bool Next(Type type, double* value) override {
     const std::string_view token = scanner_.NextTokenAcrossLines();
     int64_t integer = 0;
     if (ParseInt64(token, &integer)) {
@@ -164,6 +164,7 @@ class TextReader final : public ValueReader {
       if (integer == 0 && token.front() == '-') *value = -0.0;
       return true;
     }
+    if (type != Type::kFloat32) return ParseDouble(token, value);
     float number = 0;
     if (!ParseFloat(token, &number)) return false;
     *value = number;
@@ -392,7 +393,7 @@ absl::Status PlyReader::ReadRow(const Element& element, uint64_t row,
                                 ValueReader& reader) {
   const bool is_vertex = element.name == "vertex";
   const bool is_face = element.name == "face";
-  std::array<float, 3> position = {};
+  std::array<double, 3> position = {};
   for (const Property& property : element.properties) {
     if (is_face && IsCornerList(property)) {
       MARROW_RETURN_IF_ERROR(ReadCorners(element, row, property, reader));
@@ -409,7 +410,7 @@ absl::Status PlyReader::ReadRow(const Element& element, uint64_t row,
                                    "; the file may be cut off"));
     }
     const int axis = is_vertex ? AxisOf(property) : -1;
-    if (axis >= 0) position[axis] = static_cast<float>(value);
+    if (axis >= 0) position[axis] = value;
   }
   if (is_vertex) mesh_.positions.push_back(position);
   if (is_face) {

@@ -10,6 +10,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/mesh_file/readers.h"
+#include "client/mesh_file/text_precision.h"
 #include "client/mesh_file/text_scanner.h"
 #include "core/base/status_macros.h"
 
@@ -23,7 +24,6 @@ static_assert(std::endian::native == std::endian::little);
 constexpr size_t kHeaderBytes = 84;
 constexpr size_t kTriangleBytes = 50;
 constexpr size_t kNormalBytes = 12;
-constexpr size_t kPointBytes = 12;
 
 bool Is(std::string_view token, const char* keyword) {
   return absl::EqualsIgnoreCase(absl::string_view(token.data(), token.size()),
@@ -71,20 +71,26 @@ absl::StatusOr<PolygonMesh> ReadBinary(const std::string& path,
   PolygonMesh mesh;
   mesh.positions.resize(3 * triangles);
   for (uint32_t t = 0; t < triangles; ++t) {
+    std::array<float, 9> corners;
     std::memcpy(
-        &mesh.positions[3 * t],
+        corners.data(),
         bytes.data() + kHeaderBytes + size_t{kTriangleBytes} * t + kNormalBytes,
-        3 * kPointBytes);
+        sizeof(corners));
+    for (uint32_t i = 0; i < 3; ++i) {
+      mesh.positions[3 * t + i] = {corners[3 * i], corners[3 * i + 1],
+                                   corners[3 * i + 2]};
+    }
     mesh.AddFace(std::array<uint32_t, 3>{3 * t, 3 * t + 1, 3 * t + 2});
   }
   return mesh;
 }
 
-absl::Status ReadPoint(TextScanner& scanner, PolygonMesh* mesh) {
-  std::array<float, 3> point;
-  for (float& coordinate : point) {
+absl::Status ReadPoint(TextScanner& scanner, TextPrecision& precision,
+                       PolygonMesh* mesh) {
+  std::array<double, 3> point;
+  for (double& coordinate : point) {
     const std::string_view token = scanner.NextToken();
-    if (!ParseFloat(token, &coordinate)) {
+    if (!precision.Parse(token, &coordinate)) {
       return scanner.Error(absl::StrCat("after 'vertex', ", Quoted(token),
                                         " is not a coordinate"));
     }
@@ -102,6 +108,7 @@ void CloseFace(PolygonMesh* mesh) {
 absl::StatusOr<PolygonMesh> ReadText(const std::string& path,
                                      std::string_view bytes) {
   TextScanner scanner(path, bytes, {.comments = false});
+  TextPrecision precision;
   PolygonMesh mesh;
   bool in_facet = false;
   while (scanner.NextLine()) {
@@ -111,7 +118,7 @@ absl::StatusOr<PolygonMesh> ReadText(const std::string& path,
       if (Is(token, "solid") || Is(token, "endsolid")) break;
       if (Is(token, "facet")) in_facet = true;
       if (Is(token, "vertex")) {
-        MARROW_RETURN_IF_ERROR(ReadPoint(scanner, &mesh));
+        MARROW_RETURN_IF_ERROR(ReadPoint(scanner, precision, &mesh));
       } else if (Is(token, "endfacet")) {
         CloseFace(&mesh);
         in_facet = false;
@@ -122,6 +129,7 @@ absl::StatusOr<PolygonMesh> ReadText(const std::string& path,
     return scanner.Error(
         "the file ends within a facet, without 'endfacet'; it may be cut off");
   }
+  precision.Apply(&mesh);
   return mesh;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/polygon_mesh.h"
 
 namespace marrow {
 namespace {
@@ -30,22 +32,26 @@ std::errc Parse(std::string_view token, T* value) {
 }
 
 // from_chars reports a number beyond the range without saying which end.
-bool RoundOutOfRange(std::string_view token, float* value) {
-  double wide = 0;
-  if (Parse(token, &wide) == std::errc()) {
-    constexpr double kMax = std::numeric_limits<float>::max();
-    const bool huge = wide > kMax || wide < -kMax;
-    const float infinity = std::numeric_limits<float>::infinity();
-    *value =
-        huge ? (wide > 0 ? infinity : -infinity) : static_cast<float>(wide);
-    return true;
-  }
+double RoundOutOfRange(std::string_view token) {
   const size_t exponent = token.find_first_of("eE");
   const bool tiny = exponent != std::string_view::npos &&
                     token.substr(exponent + 1).find('-') == 0;
-  *value = tiny ? 0.0f : std::numeric_limits<float>::infinity();
-  if (token.front() == '-') *value = -*value;
-  return true;
+  const double value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+  return token.front() == '-' ? -value : value;
+}
+
+// What a one more in the last digit of the token is worth. REQUIRES: a number.
+double LastDigit(std::string_view token) {
+  const size_t exponent_at = std::min(token.find_first_of("eE"), token.size());
+  const size_t point = token.substr(0, exponent_at).find('.');
+  int64_t exponent = 0;
+  if (exponent_at < token.size()) {
+    ParseInt64(token.substr(exponent_at + 1), &exponent);
+  }
+  if (point != std::string_view::npos) {
+    exponent -= static_cast<int64_t>(exponent_at - point - 1);
+  }
+  return std::pow(10.0, static_cast<double>(exponent));
 }
 
 }  // namespace
@@ -125,10 +131,24 @@ size_t TextScanner::NextLineOffset() const {
 bool ParseFloat(std::string_view token, float* value) {
   token = WithoutPlus(token);
   const std::errc error = Parse(token, value);
-  if (error == std::errc::result_out_of_range) {
-    return RoundOutOfRange(token, value);
-  }
-  return error == std::errc();
+  if (error != std::errc::result_out_of_range) return error == std::errc();
+  double wide = 0;
+  ParseDouble(token, &wide);
+  *value = ToFloat(wide);
+  return true;
+}
+
+bool ParseDouble(std::string_view token, double* value) {
+  token = WithoutPlus(token);
+  const std::errc error = Parse(token, value);
+  if (error != std::errc::result_out_of_range) return error == std::errc();
+  *value = RoundOutOfRange(token);
+  return true;
+}
+
+bool FloatSays(std::string_view token, double value) {
+  if (IsFloat(value)) return true;
+  return std::abs(value - ToFloat(value)) <= 0.5 * LastDigit(token);
 }
 
 bool ParseInt64(std::string_view token, int64_t* value) {

@@ -60,6 +60,11 @@ class TextScanner {
 // and NaN in any case, and a leading '+'. Too large becomes an infinity, too
 // small zero, as rounding has it.
 bool ParseFloat(std::string_view token, float* value);
+bool ParseDouble(std::string_view token, double* value);
+// Whether the float nearest to the `value` of a token says as much as the
+// token: the two differ by at most half of its last digit. So "0.1" is a float,
+// and "0.10000000001" and "16777217" are not.
+bool FloatSays(std::string_view token, double value);
 bool ParseInt64(std::string_view token, int64_t* value);
 
 // "'TOKEN'", cut short where it is long and with control bytes as '?'.

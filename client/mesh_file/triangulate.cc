@@ -17,7 +17,7 @@ constexpr size_t kMaxClippedCorners = 1000;
 using Point2 = Eigen::Vector2d;
 
 Eigen::Vector3d Position(const PolygonMesh& mesh, uint32_t v) {
-  return Eigen::Vector3f(mesh.positions[v].data()).cast<double>();
+  return Eigen::Vector3d(mesh.positions[v].data());
 }
 
 // Newell's: twice the area vector, right for polygons that are not quite flat.

@@ -33,13 +33,21 @@ void AppendBytes(T value, std::string* out) {
   out->append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-void AppendPoint(const std::array<float, 3>& point, std::string* out) {
-  AppendNumber(point[0], out);
-  for (int axis = 1; axis < 3; ++axis) {
-    out->push_back(' ');
-    AppendNumber(point[axis], out);
+void AppendPoint(const std::array<double, 3>& point, bool floats,
+                 std::string* out) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) out->push_back(' ');
+    if (floats) {
+      AppendNumber(ToFloat(point[axis]), out);
+    } else {
+      AppendNumber(point[axis], out);
+    }
   }
   out->push_back('\n');
+}
+
+void AppendFloats(const std::array<double, 3>& point, std::string* out) {
+  for (const double x : point) AppendBytes(ToFloat(x), out);
 }
 
 void AppendCorners(std::span<const uint32_t> corners, uint64_t first_index,
@@ -54,7 +62,8 @@ void AppendCorners(std::span<const uint32_t> corners, uint64_t first_index,
 std::string OffBytes(const PolygonMesh& mesh) {
   std::string out =
       absl::StrCat("OFF\n", mesh.NumVertices(), " ", mesh.NumFaces(), " 0\n");
-  for (const auto& point : mesh.positions) AppendPoint(point, &out);
+  const bool floats = AreFloats(mesh.positions);
+  for (const auto& point : mesh.positions) AppendPoint(point, floats, &out);
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     AppendNumber(mesh.Face(f).size(), &out);
     AppendCorners(mesh.Face(f), 0, &out);
@@ -64,9 +73,10 @@ std::string OffBytes(const PolygonMesh& mesh) {
 
 std::string ObjBytes(const PolygonMesh& mesh) {
   std::string out;
+  const bool floats = AreFloats(mesh.positions);
   for (const auto& point : mesh.positions) {
     out += "v ";
-    AppendPoint(point, &out);
+    AppendPoint(point, floats, &out);
   }
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     out += "f";
@@ -81,13 +91,21 @@ std::string PlyBytes(const PolygonMesh& mesh) {
     most_corners = std::max(most_corners, mesh.Face(f).size());
   }
   const bool small = most_corners <= 255;
+  const bool floats = AreFloats(mesh.positions);
+  const std::string type = floats ? "float" : "double";
   std::string out = absl::StrCat(
       "ply\nformat binary_little_endian 1.0\nelement vertex ",
-      mesh.NumVertices(),
-      "\nproperty float x\nproperty float y\nproperty float z\nelement face ",
-      mesh.NumFaces(), "\nproperty list ", small ? "uchar" : "uint",
+      mesh.NumVertices(), "\nproperty ", type, " x\nproperty ", type,
+      " y\nproperty ", type, " z\nelement face ", mesh.NumFaces(),
+      "\nproperty list ", small ? "uchar" : "uint",
       " int vertex_indices\nend_header\n");
-  for (const auto& point : mesh.positions) AppendBytes(point, &out);
+  for (const auto& point : mesh.positions) {
+    if (floats) {
+      AppendFloats(point, &out);
+    } else {
+      AppendBytes(point, &out);
+    }
+  }
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     const uint32_t corners = static_cast<uint32_t>(mesh.Face(f).size());
     if (small) {
@@ -110,7 +128,7 @@ std::string StlBytes(const PolygonMesh& mesh) {
   AppendBytes(static_cast<uint32_t>(triangles.size()), &out);
   for (const std::array<uint32_t, 3>& triangle : triangles) {
     AppendBytes(std::array<float, 3>{}, &out);
-    for (const uint32_t v : triangle) AppendBytes(mesh.positions[v], &out);
+    for (const uint32_t v : triangle) AppendFloats(mesh.positions[v], &out);
     AppendBytes(uint16_t{0}, &out);
   }
   return out;

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-bool IsFinite(const std::array<float, 3>& p) {
+bool IsFinite(const std::array<double, 3>& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
@@ -52,14 +52,14 @@ class Welder {
   const PolygonMesh& mesh_;
   std::vector<uint32_t> ids_;
   std::vector<uint32_t> vertices_;
-  absl::flat_hash_map<std::array<float, 3>, uint32_t> by_position_;
+  absl::flat_hash_map<std::array<double, 3>, uint32_t> by_position_;
 };
 
 void PlacePoints(const PolygonMesh& mesh, const std::vector<uint32_t>& vertices,
                  Surface& surface) {
   if (vertices.empty()) return;
   const auto position = [&mesh](uint32_t v) {
-    return Eigen::Map<const Vector3f>(mesh.positions[v].data()).cast<double>();
+    return Eigen::Map<const Vector3d>(mesh.positions[v].data());
   };
   Vector3d low = position(vertices[0]);
   Vector3d high = low;
