@@ -410,6 +410,8 @@ absl::Status PlyReader::ReadRow(const Element& element, uint64_t row,
                                    "; the file may be cut off"));
     }
     const int axis = is_vertex ? AxisOf(property) : -1;
+    // In text, floats may be written with more digits than they hold.
+    if (property.type == Type::kFloat32) value = ToFloat(value);
     if (axis >= 0) position[axis] = value;
   }
   if (is_vertex) mesh_.positions.push_back(position);

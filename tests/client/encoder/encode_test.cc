@@ -26,17 +26,16 @@ namespace {
 using ::testing::HasSubstr;
 
 // The bits of a position, so that equality is to the bit.
-using Place = std::array<uint32_t, 3>;
+using Place = std::array<uint64_t, 3>;
 using TrianglePlaces = std::array<Place, 3>;
 
-Place PlaceOf(const std::array<float, 3>& p) { return std::bit_cast<Place>(p); }
+Place PlaceOf(const std::array<double, 3>& p) {
+  return std::bit_cast<Place>(p);
+}
 
 Place PlaceOf(const DecodedMesh& decoded, uint32_t point) {
-  std::array<float, 3> p;
-  for (int i = 0; i < 3; ++i) {
-    p[i] = static_cast<float>(decoded.positions(point, i));
-  }
-  return PlaceOf(p);
+  return PlaceOf({decoded.positions(point, 0), decoded.positions(point, 1),
+                  decoded.positions(point, 2)});
 }
 
 template <typename Lookup>
@@ -330,7 +329,7 @@ TEST(EncodeMeshTest, FacesComeBackFromQuantizedMeshes) {
     const auto centre = [&](size_t f) {
       Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
       for (const uint32_t v : mesh.Face(f)) {
-        sum += Eigen::RowVector3f(mesh.positions[v].data()).cast<double>();
+        sum += Eigen::RowVector3d(mesh.positions[v].data());
       }
       return Eigen::RowVector3d(sum / 3);
     };
@@ -366,6 +365,37 @@ TEST(EncodeMeshTest, SendsNumbersThatAreNotFiniteAsTheyAre) {
     EXPECT_EQ(encoded->order.NumDecodedFaces(), mesh.NumFaces());
     EXPECT_FALSE(DecodeDraco(encoded->bytes, MeshLimits()).ok());
   }
+}
+
+// A torus ten million of its radii away, its smallest part a millionth of it.
+TEST(EncodeMeshTest, DoublesComeBackToTheBit) {
+  PolygonMesh mesh = Torus(false);
+  for (auto& position : mesh.positions) position[1] += 1e7 + 1e-9;
+  mesh.positions[11][0] = 1e300;
+  mesh.positions[12][2] = 1e-300;
+  for (const EncodeMethod method :
+       {EncodeMethod::kEdgebreaker, EncodeMethod::kSequential}) {
+    const auto encoded = EncodeMesh(mesh, {.method = method});
+    ASSERT_TRUE(encoded.ok()) << encoded.status();
+    EXPECT_EQ(encoded->method, method);
+    const auto decoded = DecodeDraco(encoded->bytes, MeshLimits());
+    ASSERT_TRUE(decoded.ok()) << decoded.status();
+    ExpectFacesComeBack(mesh, *decoded, encoded->order);
+    ExpectVerticesComeBack(mesh, *decoded, encoded->order);
+  }
+}
+
+TEST(EncodeMeshTest, SendsFloatsUnlessThereIsADouble) {
+  PolygonMesh mesh = Torus(false);
+  const auto size = [&mesh](int bits) {
+    return EncodeMesh(mesh, {.method = EncodeMethod::kSequential,
+                             .quantization_bits = bits})
+        ->bytes.size();
+  };
+  const size_t floats = size(0), quantized = size(12);
+  mesh.positions[4][2] = 0.1;
+  EXPECT_EQ(size(0), floats + 12 * mesh.NumVertices());
+  EXPECT_NEAR(size(12), quantized, 8);
 }
 
 TEST(EncodeMeshTest, PutsTheCornersOfASoupTogether) {

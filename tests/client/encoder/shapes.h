@@ -54,7 +54,7 @@ inline PolygonMesh Torus(bool quads) {
 // A torus with a pentagon, a concave quad and a fan-proof hexagon beside it.
 inline PolygonMesh Polygons() {
   PolygonMesh mesh = Torus(true);
-  const auto add = [&mesh](const std::vector<std::array<float, 3>>& points) {
+  const auto add = [&mesh](const std::vector<std::array<double, 3>>& points) {
     std::vector<uint32_t> corners;
     for (const auto& point : points) {
       corners.push_back(static_cast<uint32_t>(mesh.NumVertices()));
@@ -164,11 +164,12 @@ inline PolygonMesh Isolated() {
 // An atlas cut along the plane y = 0, where one side's u begins again.
 inline void AddUvSeam(PolygonMesh* mesh) {
   for (size_t f = 0; f < mesh->NumFaces(); ++f) {
-    float y = 0;
+    double y = 0;
     for (const uint32_t v : mesh->Face(f)) y += mesh->positions[v][1];
     for (const uint32_t v : mesh->Face(f)) {
       const auto& p = mesh->positions[v];
-      mesh->corner_uvs.push_back({p[0] + (y > 0 ? 100 : 0), p[2]});
+      mesh->corner_uvs.push_back({static_cast<float>(p[0] + (y > 0 ? 100 : 0)),
+                                  static_cast<float>(p[2])});
     }
   }
 }
@@ -177,7 +178,7 @@ inline void AddUvSeam(PolygonMesh* mesh) {
 inline void AddNormalSeams(PolygonMesh* mesh) {
   for (size_t f = 0; f < mesh->NumFaces(); ++f) {
     for (const uint32_t v : mesh->Face(f)) {
-      const float smooth = mesh->positions[v][0];
+      const float smooth = static_cast<float>(mesh->positions[v][0]);
       const float flat = static_cast<float>(f);
       mesh->corner_normals.push_back({f % 2 == 0 ? smooth : flat, 0, 1});
     }

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-using Positions = std::vector<std::array<float, 3>>;
+using Positions = std::vector<std::array<double, 3>>;
 
 struct ParsedObj {
   Positions vertices;
@@ -25,7 +25,8 @@ struct ParsedObj {
   std::map<std::string, std::vector<std::vector<size_t>>> faces;  // from 0
 };
 
-ParsedObj Parse(const std::string& text) {
+// Reads what a reader of floats, or one of doubles, would.
+ParsedObj Parse(const std::string& text, bool floats = true) {
   ParsedObj obj;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -36,9 +37,10 @@ ParsedObj Parse(const std::string& text) {
       words >> obj.objects.emplace_back();
     } else if (word == "v") {
       auto& vertex = obj.vertices.emplace_back();
-      for (float& x : vertex) {
+      for (double& x : vertex) {
         words >> word;
-        x = std::strtof(word.c_str(), nullptr);
+        x = floats ? std::strtof(word.c_str(), nullptr)
+                   : std::strtod(word.c_str(), nullptr);
       }
     } else if (word == "f") {
       auto& face = obj.faces[obj.objects.back()].emplace_back();
@@ -72,6 +74,13 @@ TEST(PartsObjFileTest, ObjectsPartitionTheFacesAndFloatsRoundTrip) {
   EXPECT_EQ(PositionsOf(obj, two[1]), PositionsOf(mesh, 2));
   EXPECT_EQ(PositionsOf(obj, seven[0]), PositionsOf(mesh, 0));
   EXPECT_EQ(PositionsOf(obj, seven[1]), PositionsOf(mesh, 3));
+}
+
+TEST(PartsObjFileTest, DoublesRoundTripWhereThereAreSome) {
+  auto [mesh, labels] = MakeStrip();
+  mesh.positions[4] = {1e300, 0.1, -1e7 - 1e-7};
+  ParsedObj obj = Parse(PartsObjFile(mesh, labels).value(), false);
+  EXPECT_EQ(PositionsOf(obj, obj.faces["segment_7"][0]), PositionsOf(mesh, 0));
 }
 
 TEST(PartsObjFileTest, SharesVerticesWithinAnObjectOnly) {

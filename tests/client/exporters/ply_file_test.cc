@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 struct ParsedPly {
   std::string header;
-  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<double, 3>> positions;
   std::vector<Rgb> vertex_colors;
   std::vector<std::vector<uint32_t>> faces;
   std::vector<Rgb> face_colors;
@@ -31,14 +31,18 @@ class ByteReader {
  public:
   explicit ByteReader(std::string bytes) : bytes_(std::move(bytes)) {}
 
-  uint32_t Read(int size) {
-    uint32_t value = 0;
+  uint64_t ReadLong(int size) {
+    uint64_t value = 0;
     for (int i = 0; i < size; ++i) {
-      value |= uint32_t{static_cast<uint8_t>(bytes_.at(at_++))} << (8 * i);
+      value |= uint64_t{static_cast<uint8_t>(bytes_.at(at_++))} << (8 * i);
     }
     return value;
   }
-  float ReadFloat() { return std::bit_cast<float>(Read(4)); }
+  uint32_t Read(int size) { return static_cast<uint32_t>(ReadLong(size)); }
+  double ReadCoordinate(bool is_double) {
+    return is_double ? std::bit_cast<double>(ReadLong(8))
+                     : std::bit_cast<float>(Read(4));
+  }
   Rgb ReadColor() {
     Rgb color;
     color.red = static_cast<uint8_t>(Read(1));
@@ -64,11 +68,13 @@ ParsedPly Parse(const std::string& ply) {
   parsed.header = ply.substr(0, body);
   ByteReader reader(ply.substr(body));
   const bool wide = parsed.header.find("list uint") != std::string::npos;
+  const bool doubles =
+      parsed.header.find("property double z") != std::string::npos;
   const size_t vertices = CountAfter(parsed.header, "element vertex ");
   for (size_t v = 0; v < vertices; ++v) {
-    const float x = reader.ReadFloat();
-    const float y = reader.ReadFloat();
-    parsed.positions.push_back({x, y, reader.ReadFloat()});
+    const double x = reader.ReadCoordinate(doubles);
+    const double y = reader.ReadCoordinate(doubles);
+    parsed.positions.push_back({x, y, reader.ReadCoordinate(doubles)});
     parsed.vertex_colors.push_back(reader.ReadColor());
   }
   const size_t faces = CountAfter(parsed.header, "element face ");
@@ -94,8 +100,12 @@ TEST(PlyFileTest, HeaderNamesWhatViewersLookFor) {
                                 "property uchar blue\nend_header\n"));
 }
 
-TEST(PlyFileTest, KeepsPolygonsInOrderWithTheirPositions) {
-  const auto [mesh, labels] = MakeStrip();
+class PlyPrecisionTest : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(FloatsAndDoubles, PlyPrecisionTest, ::testing::Bool());
+
+TEST_P(PlyPrecisionTest, KeepsPolygonsInOrderWithTheirPositions) {
+  auto [mesh, labels] = MakeStrip();
+  if (GetParam()) mesh.positions[4] = {1e300, 0.1, -1e7 - 1e-7};
   const ParsedPly ply = Parse(PlyFile(mesh, labels).value());
   ASSERT_EQ(ply.faces.size(), 4u);  // not the one of two corners
   for (size_t f = 0; f < 4; ++f) {

@@ -21,6 +21,13 @@ TEST(ReadObjTest, KeepsTheOrderOfFacesAcrossGroupsAndMaterials) {
                           ElementsAre(0, 1, 3), ElementsAre(0, 2, 3)));
 }
 
+TEST(ReadObjTest, HasDoublesWhereFloatsSayLess) {
+  const std::string rest = "v 0 1 0\nv 0 0 1\nf 1 2 3\n";
+  EXPECT_EQ(ParseOrFail("m.obj", "v 0.1 0 0\n" + rest).positions[0][0], 0.1f);
+  EXPECT_THAT(ParseOrFail("m.obj", "v 0.1 0 1e-50\n" + rest).positions[0],
+              ElementsAre(0.1, 0, 1e-50));
+}
+
 TEST(ReadObjTest, EveryFaceLineIsAFace) {
   const PolygonMesh mesh =
       ParseOrFail("m.obj", std::string(kTetrahedron) +

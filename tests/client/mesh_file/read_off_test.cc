@@ -27,6 +27,16 @@ TEST(ReadOffTest, ReadsPolygonsColoursAndComments) {
                           ElementsAre(3, 3)));
 }
 
+TEST(ReadOffTest, HasDoublesWhereFloatsSayLess) {
+  const std::string rest = "1 0 0\n0 1 0\n3 0 1 2\n";
+  const PolygonMesh floats =
+      ParseOrFail("m.off", "OFF\n3 1 0\n0.1 0 0\n" + rest);
+  EXPECT_EQ(floats.positions[0][0], 0.1f);
+  const PolygonMesh doubles =
+      ParseOrFail("m.off", "OFF\n3 1 0\n0.1 10000000.5 1e300\n" + rest);
+  EXPECT_THAT(doubles.positions[0], ElementsAre(0.1, 10000000.5, 1e300));
+}
+
 TEST(ReadOffTest, ReadsItsVariants) {
   const std::string faces = "3 0 1 2\n";
   for (const std::string header : {"OFF 3 1 0\n", "3 1 0\n", "OFF\n3 1\n"}) {

@@ -69,7 +69,7 @@ TEST(ReadPlyTest, ReadsBinaryOfEitherEndSkippingWhatItDoesNotKnow) {
   for (const bool big_endian : {false, true}) {
     const PolygonMesh mesh = ParseOrFail("m.ply", BinaryPly(big_endian));
     ASSERT_EQ(mesh.NumVertices(), 4u);
-    EXPECT_THAT(mesh.positions[2], ElementsAre(2.1f, 0, -2));
+    EXPECT_THAT(mesh.positions[2], ElementsAre(2.1, 0, -2));
     EXPECT_TRUE(std::signbit(mesh.positions[2][1]));
     EXPECT_THAT(Faces(mesh),
                 ElementsAre(ElementsAre(0, 1, 2), ElementsAre(0, 1, 2, 3)));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 namespace marrow {
@@ -79,6 +80,39 @@ TEST(ParseFloatTest, RefusesOtherText) {
   float value = 0;
   for (const char* token : {"", "x", "1,5", "1.5x", "+-1", "--1", "0x10"}) {
     EXPECT_FALSE(ParseFloat(token, &value)) << token;
+  }
+}
+
+TEST(ParseDoubleTest, RoundsCorrectlyAndWhatIsOutOfRange) {
+  double value = 0;
+  for (const auto& [token, expected] :
+       std::map<std::string, double>{{"+1e300", 1e300},
+                                     {"0.1", 0.1},
+                                     {"1e-400", 0},
+                                     {"-1e400", -HUGE_VAL},
+                                     {"inf", HUGE_VAL}}) {
+    EXPECT_TRUE(ParseDouble(token, &value)) << token;
+    EXPECT_EQ(value, expected) << token;
+  }
+  EXPECT_FALSE(ParseDouble("1,5", &value));
+}
+
+bool TokenIsFloat(const std::string& token) {
+  double value = 0;
+  EXPECT_TRUE(ParseDouble(token, &value)) << token;
+  return FloatSays(token, value);
+}
+
+TEST(FloatSaysTest, AsMuchAsTheDigitsDo) {
+  for (const char* token :
+       {"0", "-1", "0.1", "+0.3333333", "0.333333343", "16777216", "1e30",
+        "1.1754944e-38", "1e-45", "123456.7", "0.10000000149011612", "nan",
+        "-inf", "3.4028235e38", "1.E-2"}) {
+    EXPECT_TRUE(TokenIsFloat(token)) << token;
+  }
+  for (const char* token : {"16777217", "0.3333333333", "10000000.5", "1e39",
+                            "1e-50", "1234567.89", "1.0000000001e-3"}) {
+    EXPECT_FALSE(TokenIsFloat(token)) << token;
   }
 }
 

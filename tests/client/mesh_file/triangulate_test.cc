@@ -33,8 +33,8 @@ double SignedArea(const Points& polygon) {
 PolygonMesh Place(const Points& polygon, int plane) {
   PolygonMesh mesh;
   for (const auto& p : polygon) {
-    std::array<float, 3> point = {static_cast<float>(p[0]),
-                                  static_cast<float>(p[1]), 0};
+    std::array<double, 3> point = {static_cast<double>(p[0]),
+                                   static_cast<double>(p[1]), 0};
     if (plane == 3) point[2] = point[0] + 2 * point[1];
     for (int turn = 0; turn < plane % 3; ++turn) {
       point = {point[2], point[0], point[1]};

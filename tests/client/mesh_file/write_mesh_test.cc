@@ -27,8 +27,12 @@ std::string TempPath(const std::string& name) {
   return std::filesystem::path(::testing::TempDir()) / ("write_mesh_" + name);
 }
 
-TEST(WriteMeshTest, ReadsBackToTheBit) {
-  const PolygonMesh mesh = MixedMesh();
+class PrecisionTest : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(FloatsAndDoubles, PrecisionTest, ::testing::Bool());
+
+TEST_P(PrecisionTest, ReadsBackToTheBit) {
+  PolygonMesh mesh = MixedMesh();
+  if (GetParam()) mesh.positions[2] = {0.1, 1e300, 1e7 + 1e-9};
   for (const char* name : {"m.off", "m.obj", "m.ply", "M.PLY"}) {
     const std::string path = TempPath(name);
     ASSERT_TRUE(WriteMesh(mesh, path).ok());

@@ -76,7 +76,7 @@ TEST(PictureTest, ScaleAndPlaceDoNotMatter) {
   auto [mesh, labels] = MakeQuadruped();
   const std::string before = DrawPng(mesh, labels, {}, kSmall).value();
   for (auto& position : mesh.positions) {
-    for (float& x : position) x *= 4;
+    for (double& x : position) x *= 4;
   }
   EXPECT_EQ(DrawPng(mesh, labels, {}, kSmall).value(), before);
 }
@@ -84,7 +84,7 @@ TEST(PictureTest, ScaleAndPlaceDoNotMatter) {
 TEST(PictureTest, TakesAnyMesh) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float big = std::numeric_limits<float>::max();
-  const std::vector<std::vector<std::array<float, 3>>> corners = {
+  const std::vector<std::vector<std::array<double, 3>>> corners = {
       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
       {{nan, nan, nan}, {1, 0, 0}, {0, 1, 0}},
       {{2, 2, 2}, {2, 2, 2}, {2, 2, 2}},

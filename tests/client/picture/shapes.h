@@ -21,7 +21,7 @@ struct LabelledMesh {
   std::vector<uint32_t> labels;
 };
 
-using Corner = std::array<float, 3>;
+using Corner = std::array<double, 3>;
 
 // Adds the box between two corners: six quads, normals outwards.
 inline void AddBox(const Corner& low, const Corner& high, uint32_t label,
