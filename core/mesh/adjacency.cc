@@ -60,9 +60,13 @@ void Adjacency::BuildEdges(const TriangleMesh& mesh) {
   }
   face_edges_.resize(mesh.faces.size());
   edge_faces_.reserve(sides.size());
+  edge_vertices_.reserve(sides.size() / 2 + 1);
+  edge_offsets_.reserve(sides.size() / 2 + 2);
   for (uint32_t side : sides) {
     const std::array<uint32_t, 2> vertices = SideVertices(mesh, side);
-    if (edge_vertices_.empty() || edge_vertices_.back() != vertices) {
+    // Not by !=, which calls memcmp for these eight bytes.
+    if (edge_vertices_.empty() || edge_vertices_.back()[0] != vertices[0] ||
+        edge_vertices_.back()[1] != vertices[1]) {
       edge_vertices_.push_back(vertices);
       edge_offsets_.push_back(static_cast<uint32_t>(edge_faces_.size()));
     }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/orientation.h"
 
@@ -15,26 +15,6 @@ namespace marrow {
 namespace {
 
 using Eigen::Vector3d;
-
-class UnionFind {
- public:
-  explicit UnionFind(size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  uint32_t Find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The lesser root stays one.
-  void Join(uint32_t i, uint32_t j) {
-    i = Find(i);
-    j = Find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 // A sum of doubles without rounding: components that do not overlap, so that
 // it is zero only where each of them is.
@@ -121,14 +101,14 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
 }
 
 void CountEdges(const Adjacency& adjacency, MeshReport& report) {
-  UnionFind loops(adjacency.NumVertices());
+  DisjointSets loops(adjacency.NumVertices());
   std::vector<uint32_t> rims;
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
     if (adjacency.EdgeFaces(e).size() >= 3) ++report.nonmanifold_edges;
     if (!adjacency.IsBoundaryEdge(e)) continue;
     ++report.boundary_edges;
     const auto [v, w] = adjacency.EdgeVertices(e);
-    loops.Join(v, w);
+    loops.Union(v, w);
     rims.push_back(v);
   }
   for (uint32_t& v : rims) v = loops.Find(v);
@@ -137,10 +117,10 @@ void CountEdges(const Adjacency& adjacency, MeshReport& report) {
 }
 
 void CountComponents(const TriangleMesh& mesh, MeshReport& report) {
-  UnionFind components(mesh.NumVertices());
+  DisjointSets components(mesh.NumVertices());
   for (const Triangle& face : mesh.faces) {
-    components.Join(face[0], face[1]);
-    components.Join(face[0], face[2]);
+    components.Union(face[0], face[1]);
+    components.Union(face[0], face[2]);
   }
   for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
     if (components.Find(v) == v) ++report.components;
@@ -156,12 +136,12 @@ uint32_t CornerOf(const TriangleMesh& mesh, uint32_t f, uint32_t v) {
 // is left is a fan.
 void CountSplitVertices(const TriangleMesh& mesh, const Adjacency& adjacency,
                         MeshReport& report) {
-  UnionFind fans(3 * mesh.faces.size());
+  DisjointSets fans(3 * mesh.faces.size());
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
     const auto faces = adjacency.EdgeFaces(e);
     for (uint32_t v : adjacency.EdgeVertices(e)) {
       for (uint32_t f : faces) {
-        fans.Join(CornerOf(mesh, faces[0], v), CornerOf(mesh, f, v));
+        fans.Union(CornerOf(mesh, faces[0], v), CornerOf(mesh, f, v));
       }
     }
   }
