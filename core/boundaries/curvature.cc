@@ -59,7 +59,8 @@ absl::StatusOr<Curvature> Curvature::Measure(const TriangleMesh& mesh,
                                              const CancelToken& cancel) {
   const std::vector<double> defects = AngleDefects(mesh, adjacency);
   const Eigen::Map<const Eigen::VectorXd> K(defects.data(), defects.size());
-  const Laplacian laplacian = BuildLaplacian(mesh);
+  MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
+                          BuildLaplacian(mesh, cancel));
   Curvature result;
   result.values_.resize(defects.size() * kNumWidths);
   Eigen::VectorXd k = K.cwiseQuotient(laplacian.M);

@@ -21,9 +21,9 @@ Positions UnitAreaPositions(const TriangleMesh& mesh);
 // The angle defects K (2 pi less the angles around a vertex) are spread by one
 // implicit step of heat flow, (M + w^2 L) k = K, for widths w that double from
 // kLeastWidth on. A step keeps the total and makes neither a new maximum nor a
-// new minimum on meshes without obtuse angles. It uses edge lengths alone, so
-// bending changes nothing. Vertices at a boundary of the mesh or at an edge of
-// three or more faces have no defect.
+// new minimum. It uses edge lengths alone, so bending changes nothing. Vertices
+// at a boundary of the mesh or at an edge of three or more faces have no
+// defect.
 //
 // Immutable, hence thread safe.
 class Curvature {
@@ -31,7 +31,8 @@ class Curvature {
   static constexpr double kLeastWidth = 0.0025;
   static constexpr uint32_t kNumWidths = 8;
 
-  // Errors: CANCELLED. Deterministic; time O(n sqrt(n)) at most.
+  // Errors: CANCELLED; those of BuildLaplacian(). Deterministic; time O(n
+  // sqrt(n)) at most.
   static absl::StatusOr<Curvature> Measure(const TriangleMesh& mesh,
                                            const Adjacency& adjacency,
                                            const CancelToken& cancel);

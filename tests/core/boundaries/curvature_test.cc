@@ -71,7 +71,7 @@ TEST(CurvatureTest, OfATorusIsPositiveOutsideAndNegativeInside) {
 TEST(CurvatureTest, SmoothingKeepsTheTotalAndLevelsTheRest) {
   const TriangleMesh mesh = LimbCross(4);
   const Curvature curvature = Measured(mesh);
-  const Eigen::VectorXd M = BuildLaplacian(mesh).M;
+  const Eigen::VectorXd M = BuildLaplacian(mesh)->M;
   double last_spread = std::numeric_limits<double>::infinity();
   for (double width : {0.005, 0.04, 0.32}) {
     double total = 0, square = 0;
