@@ -267,7 +267,7 @@ TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
 TEST_F(MarrowSegmentTest, TheMethodIsTheCallersChoice) {
   const Finished run = Segment({Sample(), "--method", "merge"});
   ASSERT_EQ(run.code, 0) << run.err;
-  const json answer = json::parse(ReadFile(Out() / "octopus.json"));
+  const json answer = json::parse(ReadFile(Out() + "/octopus.json"));
   EXPECT_GT(answer["tree"]["nodes"][0]["salience"], 0);
 }
 
