@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "core/operators/bridges.h"
 #include "core/operators/laplacian.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -84,6 +85,24 @@ TEST(PieceGraphTest, MergingGivesWhatIsSeenFromTheFaces) {
                                  graph.group_of_face().end()),
               ElementsAre(0));
   EXPECT_NEAR(graph.Area(0), 1, 1e-12);
+}
+
+TEST(PieceGraphTest, LinksAreBoundariesToo) {
+  const TriangleMesh mesh = Apart(Icosphere(1), Icosphere(1));
+  const Adjacency adjacency(mesh);
+  const uint32_t half = mesh.NumFaces() / 2;
+  std::vector<uint32_t> shell(mesh.NumFaces());
+  for (uint32_t f = half; f < shell.size(); ++f) shell[f] = 1;
+  const std::vector<Bridge> bridges = {{mesh.faces[2][0], mesh.faces[half][0]},
+                                       {mesh.faces[9][1], mesh.faces[half][0]}};
+  const FaceLinks links(adjacency, bridges);
+  PieceGraph graph(adjacency, shell, FaceAreaShares(mesh), links);
+  ASSERT_EQ(graph.boundaries().size(), 1u);
+  EXPECT_EQ(graph.boundaries().at({0, 1}).size(), 2u);
+  graph.Merge(0, 1);
+  EXPECT_TRUE(graph.boundaries().empty());
+  EXPECT_TRUE(
+      PieceGraph(adjacency, shell, FaceAreaShares(mesh)).boundaries().empty());
 }
 
 }  // namespace
