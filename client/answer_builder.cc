@@ -119,14 +119,15 @@ absl::Status AnswerBuilder::AddNode(const v1::Node& node) {
 }
 
 absl::Status AnswerBuilder::BeginNode(const v1::Node& node) {
-  // Every split has two children at least, so a tree over m faces has fewer
-  // than 2 m nodes.
-  if (nodes_.size() >= size_t{2} * num_faces_) return Bad("too many nodes");
+  // The nodes of a level share out the faces, so a level over m faces has at
+  // most m, and the root comes before the first.
+  if (nodes_.size() > levels_.size() * num_faces_) return Bad("too many nodes");
   SegmentNode result;
   result.id = node.id();
   result.parent = node.has_parent() ? node.parent() : kNone;
   result.level = node.level();
   result.area = node.area();
+  result.salience = node.salience();
   result.centroid = ToPoint(node.centroid());
   if (!nodes_.emplace(node.id(), std::move(result)).second) {
     return Bad("node ", node.id(), " came twice");

@@ -26,6 +26,8 @@ struct SegmentNode {
   Point3 centroid{};                       // centre of mass of its surface
   std::vector<uint32_t> medial_structure;  // vertices of the user's file
   uint32_t iterations = 0;  // of the relaxation that split it; 0 for a leaf
+  // Strength of the strongest boundary inside it; 0 in the paper's method.
+  double salience = 0;
   std::string stop_reason;  // why it has no children; empty where it has
 };
 

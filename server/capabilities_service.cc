@@ -39,6 +39,7 @@ v1::GetCapabilitiesResponse Describe(const ServerOptions& options) {
     message->set_max(range.max);
   }
   response.add_methods(v1::METHOD_PAPER);
+  response.add_methods(v1::METHOD_MERGE);
   for (const char* bitstream : {"2.0", "2.1", "2.2"}) {
     response.add_draco_bitstreams(bitstream);
   }

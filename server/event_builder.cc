@@ -198,6 +198,7 @@ std::vector<v1::Node> LevelEvents::ToNodes(const SegmentNode& node) const {
   uint32_t faces = 0;
   for (const uint32_t face : node.faces) faces += decoded_faces_[face];
   first.set_face_count(faces);
+  first.set_salience(node.salience);
 
   std::vector<uint32_t> points;
   points.reserve(node.medial_structure.size());

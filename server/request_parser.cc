@@ -11,10 +11,11 @@
 namespace marrow {
 namespace {
 
-absl::Status ParseMethod(v1::Method method) {
+absl::StatusOr<Method> ParseMethod(v1::Method method) {
   if (method == v1::METHOD_UNSPECIFIED || method == v1::METHOD_PAPER) {
-    return absl::OkStatus();
+    return Method::kPaper;
   }
+  if (method == v1::METHOD_MERGE) return Method::kMerge;
   return InvalidField("options.method",
                       absl::StrCat("this server does not know method ",
                                    static_cast<int>(method),
@@ -23,8 +24,8 @@ absl::Status ParseMethod(v1::Method method) {
 
 absl::StatusOr<SegmentationOptions> ParseOptions(
     const v1::SegmentationOptions& message) {
-  MARROW_RETURN_IF_ERROR(ParseMethod(message.method()));
   SegmentationOptions options;
+  MARROW_ASSIGN_OR_RETURN(options.method, ParseMethod(message.method()));
   if (message.has_kappa()) options.split.kappa = message.kappa();
   if (message.has_delta()) options.split.delta = message.delta();
   if (message.has_epsilon()) options.split.epsilon = message.epsilon();

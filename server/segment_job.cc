@@ -145,6 +145,7 @@ std::string SegmentJobKey(const MeshDigest& mesh,
   const Outputs& outputs = parameters.outputs;
   DigestBuilder key("marrow segment job 1");
   key.AddString(mesh.sha256.Hex());
+  key.AddU64(static_cast<uint64_t>(options.method));
   for (const double value : {options.split.kappa, options.split.delta,
                              options.split.epsilon, options.split.tolerance}) {
     key.Add(&value, sizeof(value));

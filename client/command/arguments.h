@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/time/time.h"
+#include "marrow/v1/segmentation_service.pb.h"
 
 namespace marrow::client {
 
@@ -30,6 +31,7 @@ struct ServiceArguments {
 struct SegmentArguments {
   std::vector<std::string> files;
   std::string folder = ".";
+  v1::Method method = v1::METHOD_UNSPECIFIED;
   std::optional<double> kappa;
   std::optional<double> delta;
   std::optional<double> epsilon;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -127,6 +128,13 @@ void AddPairs(CLI::App& app, const std::string& names,
 
 // A value's range is the server's business, so that there is one place for it.
 void AddParameters(CLI::App& app, SegmentArguments& arguments) {
+  const std::map<std::string, v1::Method> methods = {
+      {"paper", v1::METHOD_PAPER}, {"merge", v1::METHOD_MERGE}};
+  app.add_option("--method", arguments.method,
+                 "paper: split from the top; merge: merge pieces across their "
+                 "weakest boundaries (paper)")
+      ->transform(CLI::CheckedTransformer(methods).description(""))
+      ->type_name("NAME");
   app.add_option("--kappa", arguments.kappa,
                  "Higher gives fewer segments, 0.1 to 10 (1.5)")
       ->check(CheckNumber)

@@ -25,6 +25,7 @@ constexpr uint32_t kMaxInFlight = 16;
 
 v1::SegmentationOptions ToMessage(const SegmentArguments& arguments) {
   v1::SegmentationOptions options;
+  options.set_method(arguments.method);
   if (arguments.kappa) options.set_kappa(*arguments.kappa);
   if (arguments.delta) options.set_delta(*arguments.delta);
   if (arguments.epsilon) options.set_epsilon(*arguments.epsilon);

@@ -24,6 +24,7 @@ Json NodeJson(const SegmentNode& node) {
           {"area", node.area},
           {"centroid", node.centroid},
           {"medial_structure", node.medial_structure},
+          {"salience", node.salience},
           {"iterations", node.iterations},
           {"stop_reason", node.stop_reason}};
 }

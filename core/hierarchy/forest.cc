@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/hierarchy/tree_builder.h"
+#include "core/hierarchy/segment_node.h"
 
 namespace marrow {
 namespace {
@@ -19,12 +19,20 @@ class Planter {
     std::sort(attached_.begin(), attached_.end());
   }
 
-  SegmentTree Plant(const std::vector<const SegmentTree*>& trees) {
-    const uint32_t shift = trees.size() > 1 ? 1 : 0;
-    if (shift > 0) AddRoot(*trees[0]);
+  SegmentTree Plant(const std::vector<const SegmentTree*>& trees,
+                    BodyRoots roots) {
+    const uint32_t shift =
+        trees.size() > 1 && roots == BodyRoots::kLevelOne ? 1 : 0;
     // New ids of the nodes of each tree.
     std::vector<std::vector<uint32_t>> ids(trees.size());
-    for (uint32_t level = 0, any = 1; any > 0; ++level) {
+    if (trees.size() > 1) AddRoot(*trees[0]);
+    if (trees.size() > 1 && roots == BodyRoots::kNone) {
+      result_.nodes[0].salience = 1;
+      for (size_t b = 0; b < trees.size(); ++b)
+        if (!trees[b]->nodes[0].children.empty()) ids[b].push_back(0);
+    }
+    for (uint32_t level = result_.nodes.empty() ? 0 : 1, any = 1; any > 0;
+         ++level) {
       any = 0;
       for (size_t b = 0; b < trees.size(); ++b)
         any += AddLevel(*trees[b], bodies_.bodies[b], level, shift, ids[b]);
@@ -42,23 +50,26 @@ class Planter {
     MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, root);
   }
 
-  // Nodes of one level are neighbours in a tree, so their order is kept.
+  // Adds what belongs to `level` of the result. Nodes of one level are
+  // neighbours in a tree, so their order is kept.
   uint32_t AddLevel(const SegmentTree& tree, const Body& body, uint32_t level,
                     uint32_t shift, std::vector<uint32_t>& ids) {
     uint32_t added = 0;
     for (size_t i = ids.size();
-         i < tree.nodes.size() && tree.nodes[i].level == level; ++i, ++added) {
+         i < tree.nodes.size() && tree.nodes[i].level + shift <= level;
+         ++i, ++added) {
       const SegmentNode& old = tree.nodes[i];
       SegmentNode node;
       node.id = static_cast<uint32_t>(result_.nodes.size());
-      node.level = level + shift;
+      node.level = level;
       if (old.parent != kNoIndex) {
         node.parent = ids[old.parent];
-      } else if (shift > 0) {
+      } else if (level > 0) {
         node.parent = 0;
       }
       if (node.parent != kNoIndex)
         result_.nodes[node.parent].children.push_back(node.id);
+      node.salience = old.salience;
       node.iterations = old.iterations;
       node.stop_reason = old.stop_reason;
       node.medial_structure = ToWhole(old.medial_structure, body.vertices);
@@ -100,8 +111,9 @@ class Planter {
 SegmentTree PlantForest(const CanonicalMesh& mesh,
                         const std::vector<double>& face_areas,
                         const Bodies& bodies,
-                        const std::vector<const SegmentTree*>& trees) {
-  return Planter(mesh, face_areas, bodies).Plant(trees);
+                        const std::vector<const SegmentTree*>& trees,
+                        BodyRoots roots) {
+  return Planter(mesh, face_areas, bodies).Plant(trees, roots);
 }
 
 }  // namespace marrow

@@ -11,11 +11,18 @@
 
 namespace marrow {
 
+// What becomes of the roots of several bodies.
+enum class BodyRoots {
+  kLevelOne,  // they are the root's children, and levels are one deeper
+  // The root stands for them, of salience 1, and level k is made of level k of
+  // each; where a body is not split, its root is of level 1.
+  kNone,
+};
+
 // Where there is one body, its tree with the attached faces added to the nodes
-// whose faces they are anchored to. Where there are several, the root's
-// children are the roots of their trees, in the order of the bodies, and
-// levels are one deeper; the root's medial structure is that of the largest
-// body. Areas and centroids are those of the faces of each node.
+// whose faces they are anchored to. Where there are several, the nodes of one
+// level are in the order of the bodies, and the root's medial structure is that
+// of the largest. Areas and centroids are those of the faces of each node.
 //
 // `face_areas` are shares of the whole mesh's area. Grows with the trees: when
 // those have been deepened by a level, nodes are added behind those there
@@ -23,7 +30,8 @@ namespace marrow {
 SegmentTree PlantForest(const CanonicalMesh& mesh,
                         const std::vector<double>& face_areas,
                         const Bodies& bodies,
-                        const std::vector<const SegmentTree*>& trees);
+                        const std::vector<const SegmentTree*>& trees,
+                        BodyRoots roots);
 
 }  // namespace marrow
 

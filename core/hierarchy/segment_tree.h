@@ -21,6 +21,9 @@ struct SegmentNode {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of its surface
   std::vector<uint32_t> medial_structure;              // ascending
   std::vector<uint32_t> faces;                         // ascending
+  // How strong the strongest boundary inside it is, 0 to 1; never above its
+  // parent's. 0 where there is none, and in the paper's method.
+  double salience = 0;
 
   // Set when the node was tried for the level below it.
   std::vector<uint32_t> children;  // ascending ids
@@ -29,9 +32,10 @@ struct SegmentNode {
 };
 
 // Invariants: nodes[i].id == i; node 0 is the root and has every face; the
-// faces of a node's children partition the node's; every parent's id is less
-// than its children's; siblings are ordered by falling area, then least face,
-// those attached to them (operators/bodies.h) left out.
+// faces of a node's children partition the node's (an only child has them
+// all); every parent's id is less than its children's; siblings are ordered by
+// falling area, then least face, those attached to them (operators/bodies.h)
+// left out.
 struct SegmentTree {
   std::vector<SegmentNode> nodes;
 

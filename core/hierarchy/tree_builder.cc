@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/status_macros.h"
+#include "core/hierarchy/segment_node.h"
 
 namespace marrow {
 
@@ -30,7 +31,7 @@ TreeBuilder::TreeBuilder(const SplitContext& context,
   whole.faces.resize(context.mesh.NumFaces());
   std::iota(whole.faces.begin(), whole.faces.end(), 0u);
   whole.medial_structure = MedialStructureOf(context, whole.faces, options);
-  tree_.nodes.push_back(MakeNode(kNoIndex, std::move(whole)));
+  tree_.nodes.push_back(MakeNode(context_, mesh_area_, std::move(whole)));
 }
 
 absl::StatusOr<bool> TreeBuilder::Deepen(
@@ -64,44 +65,8 @@ void TreeBuilder::AddChildren(uint32_t parent, RegionSplit split) {
   tree_.nodes[parent].stop_reason = split.stop_reason;
   std::vector<SegmentNode> children;
   for (Piece& piece : split.pieces)
-    children.push_back(MakeNode(parent, std::move(piece)));
-  std::sort(children.begin(), children.end(),
-            [](const SegmentNode& a, const SegmentNode& b) {
-              return a.area != b.area ? a.area > b.area
-                                      : a.faces.front() < b.faces.front();
-            });
-  for (SegmentNode& child : children) {
-    child.id = static_cast<uint32_t>(tree_.nodes.size());
-    tree_.nodes[parent].children.push_back(child.id);
-    tree_.nodes.push_back(std::move(child));
-  }
-}
-
-SegmentNode TreeBuilder::MakeNode(uint32_t parent, Piece piece) const {
-  SegmentNode node;
-  node.parent = parent;
-  if (parent != kNoIndex) node.level = tree_.nodes[parent].level + 1;
-  node.faces = std::move(piece.faces);
-  node.medial_structure = std::move(piece.medial_structure);
-  MeasureNode(context_.mesh, context_.face_areas, mesh_area_, node);
-  return node;
-}
-
-void MeasureNode(const TriangleMesh& mesh,
-                 const std::vector<double>& face_areas, double mesh_area,
-                 SegmentNode& node) {
-  double share = 0;
-  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
-  Eigen::Vector3d plain = Eigen::Vector3d::Zero();
-  for (uint32_t f : node.faces) {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (uint32_t v : mesh.faces[f]) centre += mesh.Position(v) / 3;
-    weighted += face_areas[f] * centre;
-    plain += centre / static_cast<double>(node.faces.size());
-    share += face_areas[f];
-  }
-  node.area = share * mesh_area;
-  node.centroid = share > 0 ? Eigen::Vector3d(weighted / share) : plain;
+    children.push_back(MakeNode(context_, mesh_area_, std::move(piece)));
+  AppendChildren(parent, std::move(children), tree_);
 }
 
 }  // namespace marrow

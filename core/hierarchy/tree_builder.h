@@ -34,7 +34,6 @@ class TreeBuilder {
 
  private:
   void AddChildren(uint32_t parent, RegionSplit split);
-  SegmentNode MakeNode(uint32_t parent, Piece piece) const;
 
   SplitContext context_;
   SplitOptions options_;
@@ -42,12 +41,6 @@ class TreeBuilder {
   uint32_t depth_ = 0;
   SegmentTree tree_;
 };
-
-// Fills area and centroid from the faces. `face_areas` are shares of
-// `mesh_area`.
-void MeasureNode(const TriangleMesh& mesh,
-                 const std::vector<double>& face_areas, double mesh_area,
-                 SegmentNode& node);
 
 }  // namespace marrow
 

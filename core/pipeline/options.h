@@ -11,12 +11,18 @@
 namespace marrow {
 
 // Changes whenever equal requests may give other answers.
-inline constexpr char kAlgorithmRevision[] = "paper/2";
+inline constexpr char kAlgorithmRevision[] = "paper/2 merge/1";
+
+enum class Method {
+  kPaper,  // top-down: a level is a depth of the recursion
+  kMerge,  // bottom-up: a level is a threshold of salience
+};
 
 struct SegmentationOptions {
-  SplitOptions split;
+  Method method = Method::kPaper;
+  SplitOptions split;          // kMerge has a kappa of its own
   uint32_t eigen_pairs = 200;  // besides the constant one
-  uint32_t levels = 3;
+  uint32_t levels = 3;         // kMerge gives at most 3
 };
 
 // The range of one parameter, both ends allowed; `field` is its name in

@@ -23,7 +23,8 @@ enum class Stage { kMesh, kSpectrum, kSegments };
 // alone.
 struct LevelResult {
   uint32_t level;           // 1 is the coarsest
-  const SegmentTree& tree;  // so far; splits of this level's segments unknown
+  const SegmentTree& tree;  // so far; of the paper's method,
+                            // splits of this level's segments are unknown
   // Decoded face -> node id.
   const std::vector<uint32_t>& face_labels;
   // Decoded point -> node id, that of the segment with most area around it

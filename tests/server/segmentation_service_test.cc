@@ -137,6 +137,18 @@ TEST_F(SegmentTest, AnotherKappaHitsTheSameSpectrum) {
   EXPECT_EQ(solver_->calls, 1);
 }
 
+TEST_F(SegmentTest, TheMethodsAreTwoJobsOverOneSpectrum) {
+  Start();
+  v1::SegmentRequest request = Request(StarPayload(3));
+  const Answer paper = Segment(request);
+  request.mutable_options()->set_method(v1::METHOD_MERGE);
+  const Answer merge = Segment(request);
+  ASSERT_TRUE(merge.status.ok());
+  EXPECT_EQ(merge.completed().spectrum().outcome(), v1::CACHE_OUTCOME_HIT);
+  EXPECT_NE(merge.Essence(), paper.Essence());
+  EXPECT_EQ(merge.Essence(), Segment(request).Essence());
+}
+
 // Stands between the pipeline and the server's sink, and does not return from
 // level 1 before the test says so.
 class GateSink : public Sink {

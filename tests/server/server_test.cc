@@ -124,7 +124,8 @@ TEST_F(ServerTest, CapabilitiesGiveLimitsAndDefaults) {
   EXPECT_EQ(response.mesh_limits().max_inline_mesh_bytes(), 1u << 20);
   EXPECT_EQ(response.default_options().kappa(), 1.5);
   EXPECT_EQ(response.default_options().eigen_pairs(), 200u);
-  EXPECT_THAT(response.methods(), ::testing::ElementsAre(v1::METHOD_PAPER));
+  EXPECT_THAT(response.methods(),
+              ::testing::ElementsAre(v1::METHOD_PAPER, v1::METHOD_MERGE));
   ASSERT_GT(response.parameter_ranges_size(), 0);
   EXPECT_EQ(response.parameter_ranges_size(), 6);
 }

@@ -22,10 +22,12 @@ std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
                                  const std::vector<uint32_t>& faces);
 
 // The invariants of segment_tree.h, and that every segment is in one piece
-// where its parent is. `finished`: every leaf tells why it is one. `mesh_area`
+// where its parent is. `finished`: every leaf tells why it is one. `merged`:
+// the tree is one of merged pieces, else of the paper's recursion. `mesh_area`
 // in the units of the positions.
 void ExpectSoundTree(const TriangleMesh& mesh, const Adjacency& adjacency,
-                     const SegmentTree& tree, double mesh_area, bool finished);
+                     const SegmentTree& tree, double mesh_area, bool finished,
+                     bool merged = false);
 
 // The promises of skeleton.h.
 void ExpectSoundSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,

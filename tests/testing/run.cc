@@ -34,6 +34,7 @@ void ExpectSameTree(const SegmentTree& a, const SegmentTree& b) {
     EXPECT_EQ(x.faces, y.faces);
     EXPECT_EQ(x.children, y.children);
     EXPECT_EQ(x.iterations, y.iterations);
+    EXPECT_EQ(x.salience, y.salience);
     EXPECT_EQ(x.stop_reason, y.stop_reason);
   }
 }

@@ -254,13 +254,21 @@ TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
       {"--kappa", "-1"},    {"--kappa", "nan"}, {"--pairs", "0"},
       {"--pairs", "1001"},  {"--delta", "1"},   {"--epsilon", "2"},
       {"--tolerance", "9"}, {"--levels", "0"},  {"--levels", "9"},
-      {"--pairs", "x"},     {"--timeout", "0"}, {"--quantize", "31"}};
+      {"--pairs", "x"},     {"--timeout", "0"}, {"--quantize", "31"},
+      {"--method", "guess"}};
   for (const auto& [option, value] : cases) {
     const Finished run = Segment({Sample(), option, value});
     EXPECT_EQ(run.code, 2) << option << " " << value << run.err;
     EXPECT_THAT(run.err, HasSubstr(option)) << value;
     EXPECT_FALSE(std::filesystem::exists(Out())) << option;
   }
+}
+
+TEST_F(MarrowSegmentTest, TheMethodIsTheCallersChoice) {
+  const Finished run = Segment({Sample(), "--method", "merge"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json answer = json::parse(ReadFile(Out() + "/octopus.json"));
+  EXPECT_GT(answer["tree"]["nodes"][0]["salience"], 0);
 }
 
 TEST_F(MarrowSegmentTest, TwoInputsWithOneStemAreRefusedBeforeAnyWork) {

@@ -28,6 +28,7 @@ Segmentation MakeSegmentation() {
   root.centroid = {1.0 / 3, -1e-300, 2};
   root.medial_structure = {4, 5};
   root.iterations = 3;
+  root.salience = 0.75;
   for (uint32_t id : {1u, 2u}) {
     segmentation.nodes[id].id = id;
     segmentation.nodes[id].parent = 0;
@@ -73,12 +74,14 @@ TEST(JsonFileTest, WritesTheTree) {
   ASSERT_EQ(nodes.size(), 3u);
   EXPECT_EQ(nodes[1], Json::parse(R"({
       "id": 1, "parent": 0, "children": [], "level": 1, "area": 0.0,
-      "centroid": [0.0, 0.0, 0.0], "medial_structure": [], "iterations": 0,
+      "centroid": [0.0, 0.0, 0.0], "medial_structure": [], "salience": 0.0,
+      "iterations": 0,
       "stop_reason": "depth"})"));
   EXPECT_TRUE(nodes[0]["parent"].is_null());
   EXPECT_EQ(nodes[0]["children"], Json({1, 2}));
   EXPECT_EQ(nodes[0]["medial_structure"], Json({4, 5}));
   EXPECT_EQ(nodes[0]["iterations"], 3);
+  EXPECT_EQ(nodes[0]["salience"], 0.75);
   EXPECT_EQ(nodes[0]["stop_reason"], "");
 }
 

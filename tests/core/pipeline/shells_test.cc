@@ -19,8 +19,9 @@
 namespace marrow {
 namespace {
 
-SegmentationOptions Levels(uint32_t levels) {
+SegmentationOptions Levels(uint32_t levels, Method method = Method::kPaper) {
   SegmentationOptions options;
+  options.method = method;
   options.eigen_pairs = 100;
   options.levels = levels;
   return options;
@@ -226,6 +227,44 @@ TEST(BodiesTest, TwoCreaturesAreChildrenOfTheRoot) {
                 FirstOf(run.levels[1].face_labels, octopus.NumFaces()),
                 alone.levels[0].face_labels),
             0.01);
+}
+
+// A level of merged pieces is the same cut of every body.
+TEST(BodiesTest, MergedCreaturesKeepTheirLevels) {
+  const TriangleMesh octopus = MakeCreature("octopus").mesh;
+  const TriangleMesh hand = Scaled(MakeCreature("hand").mesh, 0.7);
+  const TriangleMesh mesh =
+      Together(octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
+  const RecordingSink run = RunOn(mesh, Levels(3, Method::kMerge));
+  ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
+                  run.mesh.report.area, true, true);
+  EXPECT_EQ(run.tree.nodes[0].salience, 1);
+  const RecordingSink alone = RunOn(octopus, Levels(3, Method::kMerge));
+  for (size_t i = 0; i < run.levels.size(); ++i) {
+    const auto& labels = run.levels[i].face_labels;
+    EXPECT_LE(
+        RandIndexDifference(
+            FirstOf(labels, octopus.NumFaces()),
+            alone.levels[std::min(i, alone.levels.size() - 1)].face_labels),
+        0.01);
+    const std::set<uint32_t> first(labels.begin(),
+                                   labels.begin() + octopus.NumFaces());
+    for (size_t f = octopus.NumFaces(); f < labels.size(); ++f)
+      ASSERT_FALSE(first.contains(labels[f]));
+  }
+}
+
+// Bridged shells merge like pieces of one skin.
+TEST_P(ShellsTest, MergeAcrossTheGaps) {
+  const CreatureMesh creature = MakeCreature(GetParam());
+  const RecordingSink run =
+      RunOn(CutAtJoints(creature, 0.005 * Diagonal(creature.mesh)),
+            Levels(3, Method::kMerge));
+  EXPECT_EQ(run.mesh.report.bodies, 1u);
+  EXPECT_LT(run.levels[0].tree.SegmentsAtLevel(1).size(),
+            run.mesh.report.components + 2u);
+  ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
+                  run.mesh.report.area, true, true);
 }
 
 TEST(BodiesTest, AnEyeFollowsTheHead) {

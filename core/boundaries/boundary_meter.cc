@@ -1,0 +1,150 @@
+#include "core/boundaries/boundary_meter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <queue>
+#include <tuple>
+
+#include "core/boundaries/calibration.h"
+
+namespace marrow {
+namespace {
+
+constexpr double kCurvatureLimit = 5;
+constexpr double kSaddle = -0.1;
+// Breadths of the strips and widths of the curvature, in units of r.
+constexpr double kNearStrip = 0.5;
+constexpr double kWideStrip = 2;
+constexpr double kNearWidth = 0.25;
+constexpr double kWideWidth = 1;
+// Stand for the length, the share or the growth of what has none.
+constexpr double kLeastLength = 1e-12;
+constexpr double kLeastShare = 1e-12;
+constexpr double kLeastGrowth = 0.05;
+
+}  // namespace
+
+double Strength(const Measures& measures) {
+  double sum = 0;
+  for (uint32_t i = 0; i < kNumMeasures; ++i)
+    sum += kStrengthWeights[i] * measures[i];
+  return 1 / (1 + std::exp(-sum));
+}
+
+BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
+                             const Adjacency& adjacency,
+                             const std::vector<double>& face_areas,
+                             const Curvature& curvature)
+    : mesh_(mesh),
+      adjacency_(adjacency),
+      face_areas_(face_areas),
+      curvature_(curvature),
+      unit_(UnitAreaPositions(mesh)),
+      vertex_stamp_(mesh.NumVertices(), 0),
+      face_stamp_(mesh.NumFaces(), 0),
+      distance_(mesh.NumVertices(), 0) {}
+
+Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
+                                        const PieceGraph::Pair& groups) {
+  Cut cut{graph,
+          graph.boundaries().at(groups),
+          {groups.first, groups.second},
+          0,
+          0};
+  if (graph.Area(cut.groups[1]) < graph.Area(cut.groups[0]))
+    std::swap(cut.groups[0], cut.groups[1]);
+  for (uint32_t e : cut.edges) {
+    const auto [a, b] = adjacency_.EdgeVertices(e);
+    cut.length += EdgeLength(a, b);
+  }
+  cut.length = std::max(kLeastLength, cut.length);
+  cut.radius = cut.length / (2 * std::numbers::pi);
+  const double smaller = std::max(kLeastShare, graph.Area(cut.groups[0]));
+  const double larger = std::max(kLeastShare, graph.Area(cut.groups[1]));
+  const double log_length = std::log(cut.length);
+
+  Measures measures;
+  measures[kConstant] = 1;
+  measures[kLength] = log_length;
+  measures[kRelativeLength] = log_length - 0.5 * std::log(smaller);
+  measures[kSmallerArea] = std::log(smaller);
+  measures[kLargerArea] = std::log(larger);
+  std::tie(measures[kCurvatureNear], measures[kSaddleNear]) =
+      CurvatureAlong(cut, kNearWidth * cut.radius);
+  std::tie(measures[kCurvatureWide], measures[kSaddleWide]) =
+      CurvatureAlong(cut, kWideWidth * cut.radius);
+  MeasureStrips(cut, measures);
+  return measures;
+}
+
+double BoundaryMeter::EdgeLength(uint32_t a, uint32_t b) const {
+  return (unit_.row(a) - unit_.row(b)).norm();
+}
+
+std::pair<double, double> BoundaryMeter::CurvatureAlong(const Cut& cut,
+                                                        double width) const {
+  double mean = 0, saddle = 0;
+  for (uint32_t e : cut.edges) {
+    const auto [a, b] = adjacency_.EdgeVertices(e);
+    const double K = 0.5 * (curvature_.At(a, width) + curvature_.At(b, width));
+    const double scaled = K * cut.radius * cut.radius;
+    const double share = EdgeLength(a, b) / cut.length;
+    mean += share * std::clamp(scaled, -kCurvatureLimit, kCurvatureLimit);
+    if (scaled < kSaddle) saddle += share;
+  }
+  return {mean, saddle};
+}
+
+void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
+  Flood(cut, kWideStrip * cut.radius);
+  const double breadths[] = {kNearStrip * cut.radius, kWideStrip * cut.radius};
+  double areas[2][2] = {};  // breadth, side
+  for (uint32_t f : reached_) {
+    double distance = 0;
+    for (uint32_t v : mesh_.faces[f])
+      distance += (vertex_stamp_[v] == flood_ ? distance_[v] : breadths[1]) / 3;
+    const bool side = cut.graph.group_of_face()[f] == cut.groups[1];
+    for (int i = 0; i < 2; ++i)
+      if (distance < breadths[i]) areas[i][side] += face_areas_[f];
+  }
+  auto growth = [&](int breadth, int side) {
+    const double flat = breadths[breadth] * cut.length;
+    return std::log(std::max(kLeastGrowth, areas[breadth][side] / flat));
+  };
+  measures[kNearStripOfSmaller] = growth(0, 0);
+  measures[kNearStripOfLarger] = growth(0, 1);
+  measures[kWideStripOfSmaller] = growth(1, 0);
+  measures[kWideStripOfLarger] = growth(1, 1);
+}
+
+void BoundaryMeter::Flood(const Cut& cut, double limit) {
+  ++flood_;
+  reached_.clear();
+  using Entry = std::pair<double, uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> heap;
+  auto reach = [&](uint32_t v, double distance) {
+    if (vertex_stamp_[v] == flood_ && distance_[v] <= distance) return;
+    vertex_stamp_[v] = flood_;
+    distance_[v] = distance;
+    if (distance < limit) heap.push({distance, v});
+  };
+  for (uint32_t e : cut.edges)
+    for (uint32_t v : adjacency_.EdgeVertices(e)) reach(v, 0);
+  while (!heap.empty()) {
+    const auto [distance, v] = heap.top();
+    heap.pop();
+    if (distance > distance_[v]) continue;
+    for (uint32_t f : adjacency_.VertexFaces(v)) {
+      const uint32_t group = cut.graph.group_of_face()[f];
+      if (group != cut.groups[0] && group != cut.groups[1]) continue;
+      if (face_stamp_[f] != flood_) reached_.push_back(f);
+      face_stamp_[f] = flood_;
+      for (uint32_t u : mesh_.faces[f])
+        if (u != v) reach(u, distance + EdgeLength(u, v));
+    }
+  }
+}
+
+}  // namespace marrow

@@ -1,0 +1,95 @@
+// How strong a boundary is: whether people would see two parts there.
+//
+// A cut between parts runs where the surface is saddle-shaped, and the surface
+// widens beside it. Both are seen from inside the surface, so a strength does
+// not change when a joint bends.
+#ifndef MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
+#define MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/boundaries/curvature.h"
+#include "core/boundaries/piece_graph.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// What is measured of a boundary of length L between two groups. Lengths and
+// areas are those of a mesh of area 1; r = L / 2 pi, the radius of a round cut.
+enum Measure : uint32_t {
+  kConstant,        // 1
+  kLength,          // log L
+  kRelativeLength,  // log (L / sqrt(area of the smaller group))
+  kSmallerArea,     // log (area of the smaller group)
+  kLargerArea,      // log (area of the larger group)
+  kCurvatureNear,   // mean along the cut of K r^2, within +-5; width r / 4
+  kSaddleNear,      // share of the cut where that is below -0.1
+  kCurvatureWide,   // the same two at width r
+  kSaddleWide,
+  // log (area of the strip of that breadth beside the cut, over L times the
+  // breadth): 0 beside a cut through a cylinder, more where the surface
+  // widens. Distances run along edges.
+  kNearStripOfSmaller,  // breadth r / 2, in the smaller group
+  kNearStripOfLarger,
+  kWideStripOfSmaller,  // breadth 2 r
+  kWideStripOfLarger,
+  kNumMeasures
+};
+using Measures = std::array<double, kNumMeasures>;
+
+// The probability, 0 to 1, that a boundary with these measures is kept: the
+// logistic function of their sum weighted by core/boundaries/calibration.h.
+double Strength(const Measures& measures);
+
+// Measures boundaries of one mesh. Not thread safe. The referents must outlive
+// it.
+class BoundaryMeter {
+ public:
+  // `face_areas` are shares of the mesh's area.
+  BoundaryMeter(const TriangleMesh& mesh, const Adjacency& adjacency,
+                const std::vector<double>& face_areas,
+                const Curvature& curvature);
+
+  // REQUIRES: the two groups have a boundary. Time: that of walking all faces
+  // within 2 r of it. Symmetric in the groups' order.
+  Measures MeasureBoundary(const PieceGraph& graph,
+                           const PieceGraph::Pair& groups);
+
+ private:
+  // A cut and its two sides, the smaller group first.
+  struct Cut {
+    const PieceGraph& graph;
+    const PieceGraph::Boundary& edges;
+    std::array<uint32_t, 2> groups;
+    double length;
+    double radius;
+  };
+
+  double EdgeLength(uint32_t a, uint32_t b) const;
+  // Mean and share of kCurvature* and kSaddle* at a width.
+  std::pair<double, double> CurvatureAlong(const Cut& cut, double width) const;
+  void MeasureStrips(const Cut& cut, Measures& measures);
+  // Fills distance_ up to `limit` from the cut, within its groups, and
+  // reached_ with the faces that were met.
+  void Flood(const Cut& cut, double limit);
+
+  const TriangleMesh& mesh_;
+  const Adjacency& adjacency_;
+  const std::vector<double>& face_areas_;
+  const Curvature& curvature_;
+  Positions unit_;
+
+  // Of the last flood; an entry counts where its stamp is flood_.
+  uint32_t flood_ = 0;
+  std::vector<uint32_t> vertex_stamp_, face_stamp_;
+  std::vector<double> distance_;
+  std::vector<uint32_t> reached_;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_

@@ -1,0 +1,56 @@
+// Gaussian curvature at several widths: where a surface is saddle-shaped.
+#ifndef MARROW_CORE_BOUNDARIES_CURVATURE_H_
+#define MARROW_CORE_BOUNDARIES_CURVATURE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// The positions moved and scaled so that the mesh has area 1. All lengths of
+// this folder are in that unit. REQUIRES: a face of positive area.
+Positions UnitAreaPositions(const TriangleMesh& mesh);
+
+// Gaussian curvature of a mesh of area 1, smoothed over the surface.
+//
+// The angle defects K (2 pi less the angles around a vertex) are spread by one
+// implicit step of heat flow, (M + w^2 L) k = K, for widths w that double from
+// kLeastWidth on. A step keeps the total and makes neither a new maximum nor a
+// new minimum. It uses edge lengths alone, so bending changes nothing. Vertices
+// at a boundary of the mesh or at an edge of three or more faces have no
+// defect.
+//
+// Immutable, hence thread safe.
+class Curvature {
+ public:
+  static constexpr double kLeastWidth = 0.0025;
+  static constexpr uint32_t kNumWidths = 8;
+
+  // Errors: CANCELLED; those of BuildLaplacian(). Deterministic; time O(n
+  // sqrt(n)) at most.
+  static absl::StatusOr<Curvature> Measure(const TriangleMesh& mesh,
+                                           const Adjacency& adjacency,
+                                           const CancelToken& cancel);
+
+  // Curvature at a vertex, linear in the logarithm of the width between the
+  // widths that are there, constant beyond them.
+  double At(uint32_t vertex, double width) const;
+
+ private:
+  // Vertex v at width i is entry v * kNumWidths + i.
+  std::vector<double> values_;
+};
+
+// 2 pi less the sum of the angles at each vertex; 0 where it is not inside a
+// manifold part of the surface.
+std::vector<double> AngleDefects(const TriangleMesh& mesh,
+                                 const Adjacency& adjacency);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_BOUNDARIES_CURVATURE_H_

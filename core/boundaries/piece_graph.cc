@@ -1,0 +1,75 @@
+#include "core/boundaries/piece_graph.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace marrow {
+
+PieceGraph::PieceGraph(const Adjacency& adjacency,
+                       std::vector<uint32_t> piece_of_face,
+                       const std::vector<double>& face_areas,
+                       const FaceLinks& links)
+    : group_of_face_(std::move(piece_of_face)) {
+  const uint32_t count =
+      *std::max_element(group_of_face_.begin(), group_of_face_.end()) + 1;
+  faces_.resize(count);
+  areas_.resize(count);
+  for (uint32_t f = 0; f < group_of_face_.size(); ++f) {
+    faces_[group_of_face_[f]].push_back(f);
+    areas_[group_of_face_[f]] += face_areas[f];
+  }
+  std::vector<uint32_t> around;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    around.clear();
+    for (uint32_t f : adjacency.EdgeFaces(e))
+      around.push_back(group_of_face_[f]);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (size_t i = 0; i < around.size(); ++i)
+      for (size_t j = i + 1; j < around.size(); ++j)
+        boundaries_[{around[i], around[j]}].push_back(e);
+  }
+  if (!links.empty()) AddLinks(adjacency, links);
+}
+
+void PieceGraph::AddLinks(const Adjacency& adjacency, const FaceLinks& links) {
+  for (uint32_t f = 0; f < group_of_face_.size(); ++f)
+    for (uint32_t g : links.Of(f))
+      if (f < g && group_of_face_[f] != group_of_face_[g])
+        boundaries_[std::minmax(group_of_face_[f], group_of_face_[g])]
+            .push_back(adjacency.FaceEdges(f)[0]);
+  for (auto& [pair, edges] : boundaries_) {
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  }
+}
+
+void PieceGraph::Merge(uint32_t a, uint32_t b) {
+  for (uint32_t f : faces_[b]) group_of_face_[f] = a;
+  faces_[a].insert(faces_[a].end(), faces_[b].begin(), faces_[b].end());
+  faces_[b] = {};
+  areas_[a] += areas_[b];
+  areas_[b] = 0;
+  boundaries_.erase({a, b});
+  std::map<Pair, Boundary> moved;
+  for (auto it = boundaries_.begin(); it != boundaries_.end();) {
+    const auto [first, second] = it->first;
+    if (first != b && second != b) {
+      ++it;
+      continue;
+    }
+    const uint32_t other = first == b ? second : first;
+    moved[std::minmax(a, other)] = std::move(it->second);
+    it = boundaries_.erase(it);
+  }
+  for (auto& [pair, edges] : moved) {
+    Boundary& boundary = boundaries_[pair];
+    Boundary joined;
+    std::set_union(boundary.begin(), boundary.end(), edges.begin(), edges.end(),
+                   std::back_inserter(joined));
+    boundary = std::move(joined);
+  }
+}
+
+}  // namespace marrow

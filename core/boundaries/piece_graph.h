@@ -1,0 +1,57 @@
+// Pieces, the boundaries between them, and what becomes of both as they merge.
+#ifndef MARROW_CORE_BOUNDARIES_PIECE_GRAPH_H_
+#define MARROW_CORE_BOUNDARIES_PIECE_GRAPH_H_
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/mesh/adjacency.h"
+#include "core/pieces/face_links.h"
+
+namespace marrow {
+
+// Groups of pieces. A group is named by its least piece; at first every piece
+// is a group of its own. Two groups have a boundary where an edge has faces of
+// both, or a link joins faces of both: the first edge of the lesser of the two
+// faces stands for it. Not thread safe.
+//
+// Invariants: the groups partition the faces; every edge whose faces are of
+// different groups, and every edge that stands for a link between such, is in
+// the boundary of each such pair, once.
+class PieceGraph {
+ public:
+  // The lesser group first.
+  using Pair = std::pair<uint32_t, uint32_t>;
+  // Edges, ascending.
+  using Boundary = std::vector<uint32_t>;
+
+  // `piece_of_face`: every number from 0 to the greatest has a face.
+  // `face_areas` are shares of the whole area.
+  PieceGraph(const Adjacency& adjacency, std::vector<uint32_t> piece_of_face,
+             const std::vector<double>& face_areas,
+             const FaceLinks& links = {});
+
+  uint32_t NumPieces() const { return static_cast<uint32_t>(areas_.size()); }
+  // Face -> its group.
+  const std::vector<uint32_t>& group_of_face() const { return group_of_face_; }
+  double Area(uint32_t group) const { return areas_[group]; }
+  const std::map<Pair, Boundary>& boundaries() const { return boundaries_; }
+
+  // Makes one group, a, of the groups a < b.
+  // REQUIRES: they have a boundary.
+  void Merge(uint32_t a, uint32_t b);
+
+ private:
+  void AddLinks(const Adjacency& adjacency, const FaceLinks& links);
+
+  std::vector<uint32_t> group_of_face_;
+  std::vector<std::vector<uint32_t>> faces_;
+  std::vector<double> areas_;
+  std::map<Pair, Boundary> boundaries_;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_BOUNDARIES_PIECE_GRAPH_H_

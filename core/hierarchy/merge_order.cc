@@ -1,0 +1,92 @@
+#include "core/hierarchy/merge_order.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+#include "core/base/status_macros.h"
+
+namespace marrow {
+namespace {
+
+using Strengths = std::map<PieceGraph::Pair, double>;
+
+PieceGraph::Pair Weakest(const Strengths& strengths) {
+  return std::min_element(
+             strengths.begin(), strengths.end(),
+             [](const auto& x, const auto& y) { return x.second < y.second; })
+      ->first;
+}
+
+// Measures the boundaries of group `a` again after `b` has become part of it.
+void Update(const PieceGraph& graph, const PieceGraph::Pair& merged,
+            BoundaryMeter& meter, Strengths& strengths) {
+  const auto [a, b] = merged;
+  std::erase_if(strengths, [b = b](const auto& entry) {
+    return entry.first.first == b || entry.first.second == b;
+  });
+  for (const auto& [pair, edges] : graph.boundaries())
+    if (pair.first == a || pair.second == a)
+      strengths[pair] = Strength(meter.MeasureBoundary(graph, pair));
+}
+
+std::vector<uint32_t> CutAfter(const MergeOrder& order, size_t num_merges) {
+  DisjointSets groups(order.num_pieces);
+  for (size_t i = 0; i < num_merges; ++i)
+    groups.Union(order.merges[i].a, order.merges[i].b);
+  std::vector<uint32_t> cut(order.num_pieces);
+  for (uint32_t p = 0; p < cut.size(); ++p) cut[p] = groups.Find(p);
+  return cut;
+}
+
+}  // namespace
+
+std::vector<uint32_t> MergeOrder::CutAt(double threshold) const {
+  const auto end = std::partition_point(
+      merges.begin(), merges.end(),
+      [&](const PieceMerge& merge) { return merge.salience < threshold; });
+  return CutAfter(*this, end - merges.begin());
+}
+
+std::vector<uint32_t> MergeOrder::CutInto(uint32_t count) const {
+  size_t made = num_pieces > count ? num_pieces - count : 0;
+  made = std::min(made, merges.size());
+  // Merges of one salience are made together.
+  while (made > 0 && made < merges.size() &&
+         merges[made].salience == merges[made - 1].salience)
+    ++made;
+  return CutAfter(*this, made);
+}
+
+std::vector<double> MergeOrder::InnerSalience(
+    const std::vector<uint32_t>& cut) const {
+  std::vector<double> salience(num_pieces, 0);
+  for (const PieceMerge& merge : merges)
+    if (cut[merge.a] == cut[merge.b]) salience[cut[merge.a]] = merge.salience;
+  return salience;
+}
+
+absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
+                                       const CancelToken& cancel) {
+  MergeOrder order;
+  order.num_pieces = graph.NumPieces();
+  Strengths strengths;
+  for (const auto& [pair, edges] : graph.boundaries()) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    strengths[pair] = Strength(meter.MeasureBoundary(graph, pair));
+  }
+  double salience = 0;
+  while (!strengths.empty()) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    const PieceGraph::Pair pair = Weakest(strengths);
+    salience = std::max(salience, strengths[pair]);
+    order.merges.push_back({pair.first, pair.second, salience});
+    graph.Merge(pair.first, pair.second);
+    Update(graph, pair, meter, strengths);
+  }
+  return order;
+}
+
+}  // namespace marrow

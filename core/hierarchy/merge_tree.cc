@@ -1,0 +1,73 @@
+#include "core/hierarchy/merge_tree.h"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+
+#include "core/base/status_macros.h"
+#include "core/boundaries/boundary_meter.h"
+#include "core/boundaries/calibration.h"
+#include "core/boundaries/curvature.h"
+#include "core/boundaries/piece_graph.h"
+#include "core/hierarchy/level_tree.h"
+#include "core/hierarchy/tree_builder.h"
+
+namespace marrow {
+namespace {
+
+// The finding of the pieces takes about this share of the time.
+constexpr double kPiecesDone = 0.7;
+
+// Face -> piece: the leaves of the paper's tree, numbered from 0.
+absl::StatusOr<std::vector<uint32_t>> FindPieces(
+    const SplitContext& context, const SplitOptions& options, double mesh_area,
+    const CancelToken& cancel, const std::function<void(double)>& progress) {
+  TreeBuilder builder(context, options, mesh_area);
+  for (uint32_t level = 0; level < kPieceLevels; ++level) {
+    MARROW_ASSIGN_OR_RETURN(
+        const bool deeper, builder.Deepen(cancel, [&](double share) {
+          progress(kPiecesDone * (level + share) / kPieceLevels);
+        }));
+    if (!deeper) break;
+  }
+  const std::vector<uint32_t> leaves =
+      builder.tree().SegmentsAtLevel(kPieceLevels);
+  std::vector<uint32_t> piece = builder.tree().FaceSegments(kPieceLevels);
+  for (uint32_t& p : piece)
+    p = static_cast<uint32_t>(
+        std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());
+  return piece;
+}
+
+}  // namespace
+
+absl::StatusOr<MergeTree> BuildMergeTree(
+    const SplitContext& context, const SplitOptions& options, double mesh_area,
+    uint32_t levels, const CancelToken& cancel,
+    const std::function<void(double)>& progress) {
+  SplitOptions split = options;
+  split.kappa = kPieceKappa;
+  MergeTree result;
+  MARROW_ASSIGN_OR_RETURN(
+      result.piece_of_face,
+      FindPieces(context, split, mesh_area, cancel, progress));
+  MARROW_ASSIGN_OR_RETURN(
+      const Curvature curvature,
+      Curvature::Measure(context.mesh, context.adjacency, cancel));
+  BoundaryMeter meter(context.mesh, context.adjacency, context.face_areas,
+                      curvature);
+  MARROW_ASSIGN_OR_RETURN(
+      result.order,
+      MergePieces(PieceGraph(context.adjacency, result.piece_of_face,
+                             context.face_areas, context.links),
+                  meter, cancel));
+  const size_t count = std::min<size_t>(levels, std::size(kLevelSalience));
+  MARROW_ASSIGN_OR_RETURN(
+      result.tree,
+      BuildLevelTree(context, split, mesh_area, result.piece_of_face,
+                     result.order, std::span(kLevelSalience, count), cancel));
+  progress(1);
+  return result;
+}
+
+}  // namespace marrow

@@ -1,0 +1,31 @@
+// What is said of a segment, whichever method found it.
+#ifndef MARROW_CORE_HIERARCHY_SEGMENT_NODE_H_
+#define MARROW_CORE_HIERARCHY_SEGMENT_NODE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/hierarchy/segment_tree.h"
+#include "core/pieces/split_region.h"
+
+namespace marrow {
+
+// Fills area and centroid from the faces. `face_areas` are shares of
+// `mesh_area`.
+void MeasureNode(const TriangleMesh& mesh,
+                 const std::vector<double>& face_areas, double mesh_area,
+                 SegmentNode& node);
+
+// A node of the piece with its area and centroid; everything else has its
+// default. `mesh_area` is in units of the positions.
+SegmentNode MakeNode(const SplitContext& context, double mesh_area,
+                     Piece piece);
+
+// Gives the children, in the order of siblings, the next ids and the level
+// below the parent's, and appends them.
+void AppendChildren(uint32_t parent, std::vector<SegmentNode> children,
+                    SegmentTree& tree);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_HIERARCHY_SEGMENT_NODE_H_

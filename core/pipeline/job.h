@@ -1,0 +1,94 @@
+// What the methods share: a prepared mesh, its bodies, and the way to the sink.
+#ifndef MARROW_CORE_PIPELINE_JOB_H_
+#define MARROW_CORE_PIPELINE_JOB_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/base/cancel_token.h"
+#include "core/hierarchy/segment_tree.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/canonical_mesh.h"
+#include "core/operators/bodies.h"
+#include "core/operators/bridges.h"
+#include "core/pieces/split_region.h"
+#include "core/pipeline/options.h"
+#include "core/pipeline/pipeline.h"
+#include "core/spectrum/eigen_pairs.h"
+
+namespace marrow {
+
+// Shares of the whole run, by what meshes of 5k to 50k faces take.
+inline constexpr double kMeshDone = 0.05;
+inline constexpr double kSpectrumDone = 0.75;
+
+// Reports to the sink and cancels the run once the sink has had enough. The
+// referents must outlive it.
+class Reporter {
+ public:
+  Reporter(Sink& sink, const CancelToken& cancel)
+      : sink_(sink), cancel_(cancel) {}
+
+  absl::Status Took(bool go_on);
+  // Never falls: a lesser fraction is taken for the greatest so far.
+  absl::Status Progress(Stage stage, double fraction);
+
+ private:
+  Sink& sink_;
+  const CancelToken& cancel_;
+  double fraction_ = 0;
+};
+
+// The whole mesh with what every level needs beside it.
+struct Prepared {
+  const CanonicalMesh& canonical;
+  const Bodies& bodies;
+  Adjacency adjacency;
+  std::vector<double> areas;  // shares of the mesh's
+  std::vector<Bridge> bridges;
+};
+Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies);
+
+// A body, ready to be split. Of a mesh that is one body, what is prepared is
+// used again, so `prepared` and the body must outlive it.
+class PreparedBody {
+ public:
+  PreparedBody(const Prepared& prepared, const Body& body,
+               std::shared_ptr<const EigenPairs> pairs);
+  PreparedBody(const PreparedBody&) = delete;
+  PreparedBody& operator=(const PreparedBody&) = delete;
+
+  const SplitContext& context() const { return context_; }
+  double area() const { return area_; }    // in units of the positions
+  double share() const { return share_; }  // of the area of all bodies
+
+ private:
+  struct Own;
+
+  const double area_;
+  const double share_;
+  const std::shared_ptr<const Own> own_;
+  const std::shared_ptr<const EigenPairs> pairs_;
+  const SplitContext context_;
+};
+
+// What a method reads and whom it tells.
+struct Job {
+  const Prepared& prepared;
+  const std::vector<std::unique_ptr<PreparedBody>>& bodies;
+  const SegmentationOptions& options;
+  const CancelToken& cancel;
+  Reporter& reporter;
+  Sink& sink;
+};
+
+// Labels and skeleton of a level, to the sink.
+absl::Status EmitLevel(const Job& job, const SegmentTree& tree, uint32_t level);
+// The whole tree, to the sink.
+absl::Status EmitTree(const Job& job, const SegmentTree& tree);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_PIPELINE_JOB_H_

@@ -1,0 +1,113 @@
+#include "core/boundaries/boundary_meter.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/operators/laplacian.h"
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+// The boundary between the faces left and right of a plane across x.
+Measures CutAcross(const TriangleMesh& mesh, double x, bool swapped = false) {
+  const Adjacency adjacency(mesh);
+  const std::vector<double> areas = FaceAreaShares(mesh);
+  const Curvature curvature =
+      Curvature::Measure(mesh, adjacency, CancelToken()).value();
+  std::vector<uint32_t> side;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const double middle =
+        (mesh.Position(a) + mesh.Position(b) + mesh.Position(c)).x() / 3;
+    side.push_back((middle > x) != swapped);
+  }
+  BoundaryMeter meter(mesh, adjacency, areas, curvature);
+  return meter.MeasureBoundary(PieceGraph(adjacency, side, areas), {0, 1});
+}
+
+TEST(BoundaryMeterTest, MeasuresTheEquatorOfASphere) {
+  const Measures equator = CutAcross(Icosphere(5), 0);
+  EXPECT_EQ(equator[kConstant], 1);
+  // The cut follows the edges, which the equator of this sphere does not.
+  const double length = std::sqrt(std::numbers::pi);
+  EXPECT_NEAR(equator[kLength], std::log(length), 0.2);
+  EXPECT_NEAR(equator[kRelativeLength], equator[kLength] - 0.5 * std::log(0.5),
+              0.01);
+  EXPECT_NEAR(equator[kSmallerArea], std::log(0.5), 0.01);
+  EXPECT_NEAR(equator[kLargerArea], std::log(0.5), 0.01);
+  // K r^2 is 1 for a cut of the length above.
+  const double longer = std::exp(equator[kLength]) / length;
+  EXPECT_NEAR(equator[kCurvatureNear], longer * longer, 0.05);
+  EXPECT_NEAR(equator[kCurvatureWide], longer * longer, 0.05);
+  EXPECT_EQ(equator[kSaddleNear], 0);
+  EXPECT_EQ(equator[kSaddleWide], 0);
+  // A zone of breadth b has area L sin(b / R) R; half the sphere ends at 1.57.
+  EXPECT_NEAR(equator[kNearStripOfSmaller], std::log(std::sin(0.5) / 0.5),
+              0.25);
+  EXPECT_NEAR(equator[kWideStripOfSmaller], std::log(0.5), 0.3);
+  EXPECT_NEAR(equator[kNearStripOfLarger], equator[kNearStripOfSmaller], 0.1);
+}
+
+// Along the ends of the neck the surface is a saddle, and beyond it widens.
+TEST(BoundaryMeterTest, SeesTheEndOfANeck) {
+  const TriangleMesh mesh = Dumbbell(1, 48);
+  const Measures neck = CutAcross(mesh, 0.52);
+  EXPECT_GT(neck[kSaddleNear], 0.9);
+  EXPECT_LT(neck[kCurvatureNear], -0.2);
+  EXPECT_GT(neck[kWideStripOfSmaller], neck[kWideStripOfLarger] + 0.2);
+  const Measures ball = CutAcross(mesh, 1.5);
+  EXPECT_EQ(ball[kSaddleNear], 0);
+  EXPECT_GT(Strength(neck), 0.9);
+  EXPECT_LT(Strength(ball), 0.1);
+}
+
+TEST(BoundaryMeterTest, ACutThroughACylinderIsFlatOnBothSides) {
+  const Measures middle = CutAcross(Dumbbell(1, 60), 0);
+  EXPECT_NEAR(middle[kNearStripOfSmaller], 0, 0.15);
+  EXPECT_NEAR(middle[kNearStripOfLarger], 0, 0.15);
+  EXPECT_NEAR(middle[kCurvatureNear], 0, 0.1);
+}
+
+TEST(BoundaryMeterTest, NeitherOrderNorScaleNorPlaceMatters) {
+  const TriangleMesh mesh = Dumbbell(0.7, 36);
+  const Measures expected = CutAcross(mesh, 0.3);
+  EXPECT_EQ(CutAcross(mesh, 0.3, true), expected);
+  const Measures scaled = CutAcross(Scaled(mesh, 1e8), 0.3e8);
+  const Measures rotated = CutAcross(Rotated(mesh, {1, 0, 0}, 0.7), 0.3);
+  for (uint32_t i = 0; i < kNumMeasures; ++i) {
+    EXPECT_NEAR(scaled[i], expected[i], 1e-4);
+    EXPECT_NEAR(rotated[i], expected[i], 1e-4);
+  }
+}
+
+TEST(BoundaryMeterTest, EveryMeasureIsFiniteOnAnyShape) {
+  for (const NamedMesh& shape : AllShapes()) {
+    const TriangleMesh mesh = CanonicalOf(shape.mesh).mesh;
+    const Adjacency adjacency(mesh);
+    const std::vector<double> areas = FaceAreaShares(mesh);
+    const Curvature curvature =
+        Curvature::Measure(mesh, adjacency, CancelToken()).value();
+    BoundaryMeter meter(mesh, adjacency, areas, curvature);
+    std::vector<uint32_t> pieces;
+    for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+      pieces.push_back(f % 7 * 3 / 7);
+    if (mesh.NumFaces() < 7) continue;
+    const PieceGraph graph(adjacency, pieces, areas);
+    for (const auto& [pair, edges] : graph.boundaries()) {
+      const Measures measures = meter.MeasureBoundary(graph, pair);
+      for (double measure : measures)
+        EXPECT_TRUE(std::isfinite(measure)) << shape.name;
+      EXPECT_GE(Strength(measures), 0);
+      EXPECT_LE(Strength(measures), 1);
+    }
+  }
+}
+
+TEST(StrengthTest, IsHalfWhereTheWeightsSayNothing) {
+  EXPECT_EQ(Strength({}), 0.5);
+}
+
+}  // namespace
+}  // namespace marrow
