@@ -12,13 +12,14 @@
 
 namespace marrow {
 
-// What any mesh may take, in seconds of a processor, which a busy machine does
-// not make more. Sanitizers are given more.
+// What any mesh may take. Sanitizers are given more.
 double MaxSeconds();
 inline constexpr double kMaxGibibytes = 4;
 
 struct BoundedRun {
   absl::Status status;  // CANCELLED long after MaxSeconds()
+  // By the clock or of processors, whichever is less: on an idle machine it
+  // would take no longer than either.
   double seconds = 0;
   RecordingSink sink;
 };
