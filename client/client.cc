@@ -126,8 +126,7 @@ absl::StatusOr<Spectrum> Client::ComputeSpectrum(
   const Attempt attempt = [&](const v1::MeshSource& source,
                               absl::Time deadline) {
     *request.mutable_mesh() = source;
-    builder = std::make_unique<SpectrumBuilder>(
-        payload.num_points, parameters.include_eigenvectors());
+    builder = std::make_unique<SpectrumBuilder>(payload.num_points, parameters);
     CallGroup::Context context(calls_, deadline);
     auto reader = spectrum_->ComputeSpectrum(context.get(), request);
     return ReadAll(context, *reader, [&](const v1::SpectrumEvent& event) {

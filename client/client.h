@@ -32,6 +32,12 @@ struct Spectrum {
   // where they were not asked for.
   std::vector<double> eigenvectors;
   uint32_t num_points = 0;
+  // One a pair, and the certificate, as SpectrumCertificate has them; no
+  // residuals where none was asked for.
+  std::vector<double> residuals;
+  double bound = 0;
+  uint32_t count_below_bound = 0;
+  std::string solver_revision;
   nlohmann::json report;
   nlohmann::json timings;
   nlohmann::json cache;

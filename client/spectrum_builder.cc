@@ -39,12 +39,15 @@ absl::Status SpectrumBuilder::Add(const v1::SpectrumEvent& event) {
       return AddHeader(event.header());
     case v1::SpectrumEvent::kEigenvalues:
       return AddEigenvalues(event.eigenvalues());
+    case v1::SpectrumEvent::kCertificate:
+      return AddCertificate(event.certificate());
     case v1::SpectrumEvent::kEigenvectorChunk:
       return AddChunk(event.eigenvector_chunk());
     case v1::SpectrumEvent::kCompleted:
       completed_ = true;
       spectrum_.timings = TimingsJson(event.completed().timings());
       spectrum_.cache = CacheJson(event.completed().spectrum());
+      spectrum_.solver_revision = event.completed().solver_revision();
       return absl::OkStatus();
     default:
       return absl::OkStatus();
@@ -70,6 +73,22 @@ absl::Status SpectrumBuilder::AddEigenvalues(
   }
   spectrum_.eigenvalues.assign(eigenvalues.eigenvalues().begin(),
                                eigenvalues.eigenvalues().end());
+  return absl::OkStatus();
+}
+
+absl::Status SpectrumBuilder::AddCertificate(
+    const v1::SpectrumCertificate& certificate) {
+  if (!with_certificate_ ||
+      static_cast<uint32_t>(certificate.residuals_size()) != pair_count_ ||
+      certificate.count_below_bound() > pair_count_) {
+    return Bad("it has ", certificate.residuals_size(),
+               " residuals and counts ", certificate.count_below_bound(),
+               " of ", pair_count_, " pairs");
+  }
+  spectrum_.residuals.assign(certificate.residuals().begin(),
+                             certificate.residuals().end());
+  spectrum_.bound = certificate.bound();
+  spectrum_.count_below_bound = certificate.count_below_bound();
   return absl::OkStatus();
 }
 
@@ -99,6 +118,7 @@ absl::Status SpectrumBuilder::AddChunk(const v1::EigenvectorChunk& chunk) {
 absl::StatusOr<Spectrum> SpectrumBuilder::Finish() {
   const size_t values = size_t{pair_count_} * spectrum_.num_points;
   if (!completed_ || spectrum_.eigenvalues.size() != pair_count_ ||
+      (with_certificate_ && spectrum_.residuals.size() != pair_count_) ||
       (with_eigenvectors_ && spectrum_.eigenvectors.size() != values)) {
     return Bad("it is not whole");
   }

@@ -15,8 +15,11 @@ namespace marrow::client {
 // Trusts nothing that a server says. Not thread safe. Errors: DATA_LOSS.
 class SpectrumBuilder {
  public:
-  SpectrumBuilder(uint32_t num_points, bool with_eigenvectors)
-      : with_eigenvectors_(with_eigenvectors) {
+  // `request` is what was asked for, of a mesh with `num_points` points.
+  SpectrumBuilder(uint32_t num_points,
+                  const v1::ComputeSpectrumRequest& request)
+      : with_eigenvectors_(request.include_eigenvectors()),
+        with_certificate_(request.include_eigenvectors() || request.strict()) {
     spectrum_.num_points = num_points;
   }
 
@@ -28,9 +31,11 @@ class SpectrumBuilder {
  private:
   absl::Status AddHeader(const v1::SpectrumHeader& header);
   absl::Status AddEigenvalues(const v1::Eigenvalues& eigenvalues);
+  absl::Status AddCertificate(const v1::SpectrumCertificate& certificate);
   absl::Status AddChunk(const v1::EigenvectorChunk& chunk);
 
   const bool with_eigenvectors_;
+  const bool with_certificate_;
   uint64_t sequence_ = 0;
   uint32_t pair_count_ = 0;
   bool completed_ = false;

@@ -26,6 +26,9 @@ struct Engine {
   // The cache of eigen-pairs stands before it.
   std::shared_ptr<EigenPairSource> solver =
       std::make_shared<SolverEigenPairSource>();
+  // For strict spectra.
+  std::shared_ptr<EigenPairSource> strict_solver =
+      std::make_shared<SolverEigenPairSource>(kStrictSolverTolerance);
 };
 
 }  // namespace marrow

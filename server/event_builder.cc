@@ -18,6 +18,8 @@ namespace {
 // Labels and eigenvectors go out as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
 
+constexpr uint64_t kValuesAChunk = kChunkBytes / sizeof(double);
+
 template <typename T>
 void SetPacked(const T* values, size_t count, std::string* bytes) {
   bytes->assign(reinterpret_cast<const char*>(values), count * sizeof(T));
@@ -281,12 +283,20 @@ std::vector<v1::SegmentEvent> SkeletonEvents(uint32_t level,
 }
 
 SpectrumEvents::SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
-                               std::shared_ptr<const EigenPairs> pairs,
-                               bool eigenvectors)
-    : mesh_(std::move(mesh)), eigen_pairs_(std::move(pairs)) {
+                               std::shared_ptr<const EigenPairs> pairs)
+    : mesh_(std::move(mesh)),
+      eigenvalues_(pairs->eigenvalues),
+      area_(pairs->area) {}
+
+SpectrumEvents::SpectrumEvents(
+    std::shared_ptr<const CanonicalMesh> mesh,
+    std::shared_ptr<const CertifiedSpectrum> spectrum, bool eigenvectors)
+    : mesh_(std::move(mesh)),
+      eigenvalues_(spectrum->eigenvalues),
+      area_(spectrum->area),
+      certified_(std::move(spectrum)) {
   if (!eigenvectors) return;
-  constexpr uint64_t kValuesAChunk = kChunkBytes / sizeof(double);
-  pairs_sent_ = eigen_pairs_->NumPairs();
+  pairs_sent_ = certified_->NumPairs();
   chunks_a_pair_ =
       (mesh_->point_map.size() + kValuesAChunk - 1) / kValuesAChunk;
 }
@@ -294,8 +304,8 @@ SpectrumEvents::SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
 v1::SpectrumEvent SpectrumEvents::Make(uint64_t index) const {
   if (index == 0) return Header();
   if (index == 1) return Eigenvalues();
-  constexpr uint64_t kValuesAChunk = kChunkBytes / sizeof(double);
-  const uint64_t chunk = index - 2;
+  if (index == kBeforeCertificate) return Certificate();
+  const uint64_t chunk = index - kBeforeCertificate - 1;
   return Chunk(static_cast<uint32_t>(chunk / chunks_a_pair_),
                chunk % chunks_a_pair_ * kValuesAChunk);
 }
@@ -303,7 +313,7 @@ v1::SpectrumEvent SpectrumEvents::Make(uint64_t index) const {
 v1::SpectrumEvent SpectrumEvents::Header() const {
   v1::SpectrumEvent event;
   v1::SpectrumHeader* header = event.mutable_header();
-  header->set_pair_count(eigen_pairs_->NumPairs());
+  header->set_pair_count(static_cast<uint32_t>(eigenvalues_.size()));
   header->set_point_count(static_cast<uint32_t>(mesh_->point_map.size()));
   SetMeshReport(mesh_->report, header->mutable_report());
   return event;
@@ -311,24 +321,33 @@ v1::SpectrumEvent SpectrumEvents::Header() const {
 
 v1::SpectrumEvent SpectrumEvents::Eigenvalues() const {
   v1::SpectrumEvent event;
-  for (const double lambda : eigen_pairs_->eigenvalues) {
-    event.mutable_eigenvalues()->add_eigenvalues(lambda / eigen_pairs_->area);
+  for (const double lambda : eigenvalues_) {
+    event.mutable_eigenvalues()->add_eigenvalues(lambda / area_);
   }
+  return event;
+}
+
+v1::SpectrumEvent SpectrumEvents::Certificate() const {
+  v1::SpectrumEvent event;
+  v1::SpectrumCertificate* certificate = event.mutable_certificate();
+  certificate->mutable_residuals()->Add(certified_->residuals.begin(),
+                                        certified_->residuals.end());
+  certificate->set_bound(certified_->bound / area_);
+  certificate->set_count_below_bound(certified_->count_below_bound);
   return event;
 }
 
 v1::SpectrumEvent SpectrumEvents::Chunk(uint32_t pair,
                                         uint64_t first_point) const {
-  const double scale = 1 / std::sqrt(eigen_pairs_->area);
-  const size_t end = std::min(first_point + kChunkBytes / sizeof(double),
+  const double scale = 1 / std::sqrt(area_);
+  const size_t end = std::min(first_point + kValuesAChunk,
                               static_cast<uint64_t>(mesh_->point_map.size()));
   std::vector<double> values;
   values.reserve(end - first_point);
   for (size_t point = first_point; point < end; ++point) {
     const uint32_t v = mesh_->point_map[point];
-    values.push_back(v == kNoIndex
-                         ? std::numeric_limits<double>::quiet_NaN()
-                         : scale * eigen_pairs_->eigenvectors(v, pair));
+    values.push_back(v == kNoIndex ? std::numeric_limits<double>::quiet_NaN()
+                                   : scale * certified_->eigenvectors(v, pair));
   }
   v1::SpectrumEvent event;
   v1::EigenvectorChunk* chunk = event.mutable_eigenvector_chunk();

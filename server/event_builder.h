@@ -11,6 +11,7 @@
 #include "core/mesh/canonical_mesh.h"
 #include "core/pipeline/pipeline.h"
 #include "core/skeleton/skeleton.h"
+#include "core/spectrum/certified_spectrum.h"
 #include "marrow/v1/mesh.pb.h"
 #include "marrow/v1/segmentation_service.pb.h"
 #include "marrow/v1/spectrum_service.pb.h"
@@ -64,24 +65,36 @@ std::vector<v1::SegmentEvent> LabelEvents(uint32_t level,
 std::vector<v1::SegmentEvent> SkeletonEvents(uint32_t level,
                                              const Skeleton& skeleton);
 
-// Header, eigenvalues and eigenvectors of a spectrum, one event after another.
-// Immutable, thread safe; holds what it needs.
+// Header, eigenvalues, certificate and eigenvectors of a spectrum, one event
+// after another. Immutable, thread safe; holds what it needs.
 class SpectrumEvents {
  public:
+  // Header and eigenvalues alone.
   SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
-                 std::shared_ptr<const EigenPairs> pairs, bool eigenvectors);
+                 std::shared_ptr<const EigenPairs> pairs);
+  SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
+                 std::shared_ptr<const CertifiedSpectrum> spectrum,
+                 bool eigenvectors);
 
-  uint64_t count() const { return 2 + pairs_sent_ * chunks_a_pair_; }
+  uint64_t count() const {
+    return kBeforeCertificate + (certified_ != nullptr) +
+           pairs_sent_ * chunks_a_pair_;
+  }
   // REQUIRES: index < count().
   v1::SpectrumEvent Make(uint64_t index) const;
 
  private:
   v1::SpectrumEvent Header() const;
   v1::SpectrumEvent Eigenvalues() const;
+  v1::SpectrumEvent Certificate() const;
   v1::SpectrumEvent Chunk(uint32_t pair, uint64_t first_point) const;
 
+  static constexpr uint64_t kBeforeCertificate = 2;
+
   const std::shared_ptr<const CanonicalMesh> mesh_;
-  const std::shared_ptr<const EigenPairs> eigen_pairs_;
+  const Eigen::VectorXd eigenvalues_;
+  const double area_;
+  const std::shared_ptr<const CertifiedSpectrum> certified_;  // or null
   uint64_t pairs_sent_ = 0;
   uint64_t chunks_a_pair_ = 0;
 };

@@ -5,7 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "core/spectrum/certified_spectrum.h"
 #include "server/event_builder.h"
 #include "server/event_stream.h"
 #include "server/request_parser.h"
@@ -21,11 +24,15 @@ using Plan = JobPlan<v1::SpectrumEvent>;
 
 // Shares of the whole call, for Progress.
 constexpr double kMeshShare = 0.1;
+constexpr double kSolverShare = 0.7;
 
 struct Work {
   Payload payload;
   uint32_t eigen_pairs;
   bool eigenvectors;
+  bool strict;
+
+  bool Certified() const { return eigenvectors || strict; }
 };
 
 double Seconds(Clock::duration duration) {
@@ -33,11 +40,68 @@ double Seconds(Clock::duration duration) {
 }
 
 std::string KeyOf(const Work& work) {
-  DigestBuilder key("marrow spectrum job 1");
+  DigestBuilder key("marrow spectrum job 2");
   key.AddString(work.payload.digest.sha256.Hex());
   key.AddU64(work.eigen_pairs);
   key.AddU64(work.eigenvectors);
+  key.AddU64(work.strict);
   return key.Finish().Hex();
+}
+
+// Strict pairs are in double, which the cache does not keep.
+absl::StatusOr<std::shared_ptr<const EigenPairs>> GetPairs(
+    ServiceContext& context, const Work& work, const CanonicalMesh& mesh,
+    const CancelToken& cancel, const ProgressCallback& progress,
+    SpectrumUse& use) {
+  if (!work.strict) {
+    return context.spectra.Get(mesh, work.eigen_pairs, cancel, progress, use);
+  }
+  use = {.outcome = CacheOutcome::kMiss, .solver_runs = 1};
+  return context.engine.strict_solver->Get(
+      mesh, WithStrictGuards(work.eigen_pairs), cancel, progress);
+}
+
+absl::StatusOr<std::shared_ptr<const CertifiedSpectrum>> Certify(
+    const Work& work, const CanonicalMesh& mesh, const EigenPairs& pairs,
+    const CancelToken& cancel, const ProgressCallback& progress) {
+  const double residual = work.strict ? kStrictResidual : kUsualResidual;
+  MARROW_ASSIGN_OR_RETURN(CertifiedSpectrum spectrum,
+                          CertifySpectrum(mesh, pairs, work.eigen_pairs,
+                                          residual, cancel, progress));
+  const double worst = spectrum.residuals.maxCoeff();
+  if (work.strict && !(worst <= residual)) {
+    return WithReason(
+        absl::InternalError(absl::StrCat(
+            "a residual is ", worst, " and not at most ", residual,
+            ", as a strict spectrum wants it; ask for a usual one")),
+        kReasonSolverNotConverged);
+  }
+  return std::make_shared<const CertifiedSpectrum>(std::move(spectrum));
+}
+
+// Everything but the last event.
+absl::StatusOr<std::shared_ptr<const SpectrumEvents>> Solve(
+    ServiceContext& context, const Work& work,
+    std::shared_ptr<const CanonicalMesh> mesh, SpectrumJob& job,
+    SpectrumUse& use) {
+  const auto report = [&job](double from, double to) {
+    return [&job, from, to](double fraction) {
+      job.Progress(v1::STAGE_SPECTRUM, from + (to - from) * fraction);
+    };
+  };
+  const double solved = work.Certified() ? kSolverShare : 1;
+  MARROW_ASSIGN_OR_RETURN(const auto pairs,
+                          GetPairs(context, work, *mesh, *job.cancel(),
+                                   report(kMeshShare, solved), use));
+  if (!work.Certified()) {
+    return std::make_shared<const SpectrumEvents>(mesh, pairs);
+  }
+  MARROW_ASSIGN_OR_RETURN(
+      auto spectrum,
+      Certify(work, *mesh, *pairs, *job.cancel(), report(solved, 1)));
+  use.eigen_pairs = spectrum->NumPairs() - 1;
+  return std::make_shared<const SpectrumEvents>(mesh, std::move(spectrum),
+                                                work.eigenvectors);
 }
 
 absl::Status Compute(ServiceContext& context, const Work& work,
@@ -52,14 +116,8 @@ absl::Status Compute(ServiceContext& context, const Work& work,
   const Clock::time_point loaded_at = Clock::now();
   job.Progress(v1::STAGE_SPECTRUM, kMeshShare);
   SpectrumUse use;
-  MARROW_ASSIGN_OR_RETURN(
-      auto pairs, context.spectra.Get(
-                      *mesh, work.eigen_pairs, *job.cancel(),
-                      [&job](double fraction) {
-                        job.Progress(v1::STAGE_SPECTRUM,
-                                     kMeshShare + (1 - kMeshShare) * fraction);
-                      },
-                      use));
+  MARROW_ASSIGN_OR_RETURN(const auto events,
+                          Solve(context, work, mesh, job, use));
 
   v1::SpectrumEvent last;
   v1::SpectrumCompleted* completed = last.mutable_completed();
@@ -67,6 +125,7 @@ absl::Status Compute(ServiceContext& context, const Work& work,
   SetGeometryDigest(mesh->geometry_digest,
                     completed->mutable_geometry_digest());
   SetSpectrumUse(use, completed->mutable_spectrum());
+  completed->set_solver_revision(kSolverRevision);
   const Clock::time_point end = Clock::now();
   v1::Timings* timings = completed->mutable_timings();
   timings->set_queued_seconds(Seconds(begin - job.created()));
@@ -74,8 +133,6 @@ absl::Status Compute(ServiceContext& context, const Work& work,
   timings->set_spectrum_seconds(Seconds(end - loaded_at));
   timings->set_total_seconds(Seconds(end - job.created()));
 
-  const auto events =
-      std::make_shared<SpectrumEvents>(mesh, pairs, work.eigenvectors);
   job.CompleteLazily(events->count() + 1, [events, last](uint64_t index) {
     return index < events->count() ? events->Make(index) : last;
   });
@@ -88,6 +145,7 @@ absl::StatusOr<Plan> MakePlan(ServiceContext& context,
   if (context.draining) return Draining();
   Work work;
   work.eigenvectors = request.include_eigenvectors();
+  work.strict = request.strict();
   MARROW_ASSIGN_OR_RETURN(
       work.eigen_pairs, ParseEigenPairs(request.has_eigen_pairs(),
                                         request.eigen_pairs(), "eigen_pairs"));

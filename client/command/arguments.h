@@ -51,7 +51,10 @@ struct InspectArguments {
 struct SpectrumArguments {
   std::string file;
   std::optional<uint32_t> pairs;
-  std::string output;  // a .npy file for the eigenvectors; empty: none
+  bool strict = false;
+  // Where the eigenvectors go: an .npz archive, "-" for one on standard output,
+  // any other name for a bare .npy matrix; empty: nowhere.
+  std::string output;
   ServiceArguments service;
 };
 

@@ -65,8 +65,9 @@ void Finish(EigenPairs& pairs) {
       if (std::abs(vectors(v, k)) > std::abs(largest[k]))
         largest[k] = vectors(v, k);
   const Eigen::RowVectorXf sign =
-      (largest.array() < 0).select(Eigen::RowVectorXf::Constant(count, -1),
-                                   Eigen::RowVectorXf::Ones(count));
+      (largest.array() < 0)
+          .select(Eigen::RowVectorXf::Constant(count, -1),
+                  Eigen::RowVectorXf::Ones(count));
   for (Eigen::Index v = 0; v < vectors.rows(); ++v)
     vectors.row(v) = vectors.row(v).cwiseProduct(sign);
   vectors.col(0).setOnes();
@@ -91,8 +92,7 @@ void Assign(SlicedSpectrum raw, const Eigen::VectorXd& scale, int count,
       pairs.eigenvalues[column + k] = part.band.values[part.first + k];
     for (Eigen::Index i = 0; i < scale.size(); ++i) {
       const int v = raw.order[i];
-      const float* row =
-          part.band.vectors.data() + i * stride + part.first;
+      const float* row = part.band.vectors.data() + i * stride + part.first;
       for (int k = 0; k < width; ++k)
         pairs.eigenvectors(v, column + k) =
             static_cast<float>(row[k] * scale[v]);
@@ -104,17 +104,17 @@ void Assign(SlicedSpectrum raw, const Eigen::VectorXd& scale, int count,
 
 absl::Status SolveSparse(const TriangleMesh& mesh,
                          const SymmetricProblem& problem, int count,
-                         const CancelToken& cancel,
+                         double tolerance, const CancelToken& cancel,
                          const ProgressCallback& progress, EigenPairs& pairs) {
   const auto report = [&](double share) {
     if (progress) progress(0.95 * share);
   };
   SlicingOptions options;
-  options.threads = static_cast<int>(
-      std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
-  absl::StatusOr<SlicedSpectrum> sliced =
-      SliceSpectrum(problem.A, mesh.positions.data(), count, options, cancel,
-                    report);
+  options.tolerance = tolerance;
+  options.threads =
+      static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
+  absl::StatusOr<SlicedSpectrum> sliced = SliceSpectrum(
+      problem.A, mesh.positions.data(), count, options, cancel, report);
   if (sliced.ok()) {
     Assign(*std::move(sliced), problem.inverse_sqrt_mass, count, pairs);
     return absl::OkStatus();
@@ -146,8 +146,8 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
     RemoveConstant(problem.inverse_sqrt_mass, raw);
     Assign(raw, problem.inverse_sqrt_mass, *result);
   } else {
-    MARROW_RETURN_IF_ERROR(
-        SolveSparse(mesh.mesh, problem, pairs, cancel, progress, *result));
+    MARROW_RETURN_IF_ERROR(SolveSparse(mesh.mesh, problem, pairs, tolerance_,
+                                       cancel, progress, *result));
   }
   Finish(*result);
   result->area = mesh.report.area;

@@ -178,17 +178,24 @@ TEST(SkeletonEventsTest, AnEmptySkeletonIsOneEvent) {
 TEST(SpectrumEventsTest, EigenvectorsComeInTheCallersUnitsAndOrder) {
   constexpr uint32_t kVertices = 50'000;
   auto mesh = std::make_shared<CanonicalMesh>(DoubledMesh(kVertices));
-  auto pairs = std::make_shared<EigenPairs>();
-  pairs->area = 4;
-  pairs->eigenvalues = Eigen::Vector2d(0, 8);
-  pairs->eigenvectors.setZero(kVertices, 2);
-  for (uint32_t v = 0; v < kVertices; ++v) pairs->eigenvectors(v, 1) = v;
-  const SpectrumEvents events(mesh, pairs, true);
+  auto spectrum = std::make_shared<CertifiedSpectrum>();
+  spectrum->area = 4;
+  spectrum->eigenvalues = Eigen::Vector2d(0, 8);
+  spectrum->residuals = Eigen::Vector2d(0, 1e-9);
+  spectrum->bound = 10;
+  spectrum->count_below_bound = 2;
+  spectrum->eigenvectors.setZero(kVertices, 2);
+  for (uint32_t v = 0; v < kVertices; ++v) spectrum->eigenvectors(v, 1) = v;
+  const SpectrumEvents events(mesh, spectrum, true);
   EXPECT_EQ(events.Make(0).header().pair_count(), 2u);
   EXPECT_EQ(events.Make(0).header().point_count(), 2 * kVertices);
   EXPECT_EQ(events.Make(1).eigenvalues().eigenvalues(1), 2.0);
+  const v1::SpectrumCertificate certificate = events.Make(2).certificate();
+  EXPECT_EQ(certificate.residuals(1), 1e-9);
+  EXPECT_EQ(certificate.bound(), 2.5);
+  EXPECT_EQ(certificate.count_below_bound(), 2u);
   std::vector<double> second;
-  for (uint64_t i = 2; i < events.count(); ++i) {
+  for (uint64_t i = 3; i < events.count(); ++i) {
     const auto event = events.Make(i);
     const v1::EigenvectorChunk& chunk = event.eigenvector_chunk();
     EXPECT_EQ(chunk.values_crc32c(), Crc32c(chunk.values()));
@@ -203,12 +210,22 @@ TEST(SpectrumEventsTest, EigenvectorsComeInTheCallersUnitsAndOrder) {
   EXPECT_TRUE(std::isnan(second[kVertices]));
 }
 
+TEST(SpectrumEventsTest, ACertificateWithoutEigenvectors) {
+  auto spectrum = std::make_shared<CertifiedSpectrum>();
+  spectrum->area = 1;
+  spectrum->eigenvalues = spectrum->residuals = Eigen::Vector2d(0, 8);
+  const SpectrumEvents events(std::make_shared<CanonicalMesh>(DoubledMesh(3)),
+                              spectrum, false);
+  ASSERT_EQ(events.count(), 3u);
+  EXPECT_TRUE(events.Make(2).has_certificate());
+}
+
 TEST(SpectrumEventsTest, EigenvaluesAlone) {
   auto pairs = std::make_shared<EigenPairs>();
   pairs->area = 1;
   pairs->eigenvalues = Eigen::Vector2d(0, 8);
   const SpectrumEvents events(std::make_shared<CanonicalMesh>(DoubledMesh(3)),
-                              pairs, false);
+                              pairs);
   EXPECT_EQ(events.count(), 2u);
 }
 

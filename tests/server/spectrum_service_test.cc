@@ -56,14 +56,41 @@ TEST_F(SpectrumServiceTest, EigenvectorsComeOnDemand) {
   request.set_include_eigenvectors(true);
   const auto events = Compute(request);
   ASSERT_TRUE(status_.ok()) << status_.error_message();
-  ASSERT_EQ(events.size(), 3u + 6u);
+  ASSERT_EQ(events.size(), 4u + 6u);
+  EXPECT_EQ(events[2].certificate().residuals_size(), 6);
   const auto points = events[0].header().point_count();
   for (uint32_t pair = 0; pair < 6; ++pair) {
-    const v1::EigenvectorChunk& chunk = events[2 + pair].eigenvector_chunk();
+    const v1::EigenvectorChunk& chunk = events[3 + pair].eigenvector_chunk();
     EXPECT_EQ(chunk.pair(), pair);
     EXPECT_EQ(chunk.values().size(), points * sizeof(double));
     EXPECT_EQ(chunk.values_crc32c(), Crc32c(chunk.values()));
   }
+}
+
+TEST_F(SpectrumServiceTest, StrictPairsAreCertifiedAndLeaveTheCacheAlone) {
+  Start();
+  v1::ComputeSpectrumRequest request;
+  request.mutable_mesh()->set_draco(StarPayload(3));
+  request.set_eigen_pairs(20);
+  request.set_strict(true);
+  const auto events = Compute(request);
+  ASSERT_TRUE(status_.ok()) << status_.error_message();
+  ASSERT_EQ(events.size(), 4u);
+  EXPECT_EQ(events[1].eigenvalues().eigenvalues_size(), 21);
+  const v1::SpectrumCertificate& certificate = events[2].certificate();
+  ASSERT_EQ(certificate.residuals_size(), 21);
+  for (double residual : certificate.residuals()) EXPECT_LE(residual, 1e-8);
+  uint32_t below = 0;
+  for (double lambda : events[1].eigenvalues().eigenvalues())
+    below += lambda < certificate.bound();
+  EXPECT_EQ(certificate.count_below_bound(), below);
+  EXPECT_GT(below, 10u);
+  EXPECT_FALSE(events[3].completed().solver_revision().empty());
+  EXPECT_EQ(events[3].completed().spectrum().eigen_pairs(), 20u);
+  EXPECT_EQ(solver_->calls, 0);
+  request.set_strict(false);
+  EXPECT_EQ(Compute(request).back().completed().spectrum().outcome(),
+            v1::CACHE_OUTCOME_MISS);
 }
 
 TEST_F(SpectrumServiceTest, BadFieldsAreNamed) {

@@ -1,0 +1,312 @@
+// The pairs are taken in windows of neighbours, each about a shift of its own,
+// with some of those beyond either end to keep the ends clean. Every shift
+// counts the eigenvalues below it, so a pair that is missing or there twice is
+// noticed at the first shift above it.
+#include "core/spectrum/certified_spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/error_reason.h"
+#include "core/base/status_macros.h"
+#include "core/operators/laplacian.h"
+#include "core/spectrum/inverse_iteration.h"
+#include "core/spectrum/reference_solver.h"
+#include "core/spectrum/shift_grid.h"
+
+namespace marrow {
+namespace {
+
+// Up to this size a dense solver is quicker and more exact.
+constexpr int kDenseVertices = 500;
+// Pairs of a window. Those at the low end have small ones, as what is left of
+// an iteration is in units of the distance to the shift, and a residual in
+// units of the eigenvalue.
+constexpr int kLeastOwn = 8;
+constexpr int kMostOwn = 48;
+// Pairs beyond its ends: all whose distance to the shift is less than this
+// many times that of an own pair, but at most so many.
+constexpr double kReach = 2;
+constexpr int kMostGuards = 48;
+constexpr int kMostIterations = 6;
+// An iteration that does not bring the residual below this share was the last.
+constexpr double kWorthwhile = 0.8;
+// Pairs nearer than this share of their value are not told apart by a count.
+constexpr double kCountableGap = 1e-6;
+constexpr size_t kMaxFactorBytes = size_t{4} << 30;
+constexpr double kAnalysisShare = 0.1;
+
+absl::Status Disagreement(double shift, int counted, int found) {
+  return WithReason(absl::InternalError(absl::StrCat(
+                        "the mesh has ", counted, " eigenvalues below ", shift,
+                        ", but ", found, " were found")),
+                    kReasonSolverNotConverged);
+}
+
+// The entry of largest magnitude (the first, where several are) is positive.
+void FixSign(Eigen::Ref<Eigen::VectorXd> vector) {
+  Eigen::Index at = 0;
+  vector.cwiseAbs().maxCoeff(&at);
+  if (vector[at] < 0) vector = -vector;
+}
+
+// Measures the pairs [first, end) and gives the largest residual.
+double MeasureResiduals(const Laplacian& laplacian, int first, int end,
+                        CertifiedSpectrum& spectrum) {
+  const double lambda_1 = spectrum.eigenvalues[1];
+  double worst = 0;
+  for (int k = first; k < end; ++k) {
+    const auto phi = spectrum.eigenvectors.col(k);
+    const double lambda = spectrum.eigenvalues[k];
+    const Eigen::VectorXd rest =
+        laplacian.L * phi - lambda * laplacian.M.cwiseProduct(phi);
+    spectrum.residuals[k] =
+        std::sqrt(rest.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) /
+        std::max(lambda, lambda_1);
+    worst = std::max(worst, spectrum.residuals[k]);
+  }
+  return worst;
+}
+
+class Certifier {
+ public:
+  Certifier(const EigenPairs& pairs, const Laplacian& laplacian,
+            const SupernodalStructure& structure, int count, double residual,
+            const CancelToken& cancel)
+      : pairs_(pairs),
+        count_(count),
+        laplacian_(laplacian),
+        structure_(structure),
+        factor_(structure),
+        sqrt_mass_(laplacian.M.cwiseSqrt()),
+        residual_(residual),
+        cancel_(cancel) {
+    spectrum_.eigenvalues = pairs.eigenvalues.head(count);
+    spectrum_.eigenvectors.resize(structure.n, count);
+    spectrum_.eigenvectors.col(0).setOnes();
+    spectrum_.residuals.setZero(count);
+  }
+
+  absl::StatusOr<CertifiedSpectrum> Certify(const ProgressCallback& progress) {
+    MeasureResiduals(laplacian_, 0, 1, spectrum_);
+    for (int first = 1, end; first < count_; first = end) {
+      end = EndOfWindow(first);
+      MARROW_RETURN_IF_ERROR(Refine(first, end));
+      progress(kAnalysisShare + (1 - kAnalysisShare) * end / count_);
+    }
+    MARROW_RETURN_IF_ERROR(Count());
+    return std::move(spectrum_);
+  }
+
+ private:
+  double Gap(int pair) const {
+    return pairs_.eigenvalues[pair] - pairs_.eigenvalues[pair - 1];
+  }
+  double MiddleOfGap(int pair) const {
+    return 0.5 * (pairs_.eigenvalues[pair] + pairs_.eigenvalues[pair - 1]);
+  }
+
+  // The pair of [first, end) with the largest gap below it, of large ones one
+  // whose gap is near `middle`.
+  int BestGap(int first, int end, double middle) const {
+    const double width =
+        pairs_.eigenvalues[end - 1] - pairs_.eigenvalues[first - 1];
+    const auto worth = [&](int pair) {
+      return Gap(pair) / (width + 4 * std::abs(MiddleOfGap(pair) - middle));
+    };
+    int best = first;
+    for (int pair = first + 1; pair < end; ++pair)
+      if (worth(pair) > worth(best)) best = pair;
+    return best;
+  }
+
+  int EndOfWindow(int first) const {
+    const int own = std::clamp(first, kLeastOwn, kMostOwn);
+    if (count_ - first <= own + own / 2) return count_;
+    return BestGap(first + own - own / 4, first + own + own / 4,
+                   pairs_.eigenvalues[first + own]);
+  }
+
+  // Factorises in the gap below `pair`.
+  absl::Status FactoriseBelow(int pair) {
+    MARROW_RETURN_IF_ERROR(FactoriseNear(MiddleOfGap(pair), factor_, cancel_));
+    const int counted = factor_.negative_pivots();
+    if (counted != pair && Gap(pair) > kCountableGap * factor_.shift())
+      return Disagreement(factor_.shift(), counted, pair);
+    return absl::OkStatus();
+  }
+
+  absl::Status Refine(int first, int end) {
+    const Eigen::VectorXd& values = pairs_.eigenvalues;
+    const double middle = 0.5 * (values[first] + values[end - 1]);
+    MARROW_RETURN_IF_ERROR(FactoriseBelow(BestGap(first, end, middle)));
+    const double reach = kReach * std::max(values[end - 1] - factor_.shift(),
+                                           factor_.shift() - values[first]);
+    int low = first, high = end;
+    while (low > 0 && first - low < kMostGuards &&
+           values[low] > factor_.shift() - reach)
+      --low;
+    while (high < values.size() && high - end < kMostGuards &&
+           values[high - 1] < factor_.shift() + reach)
+      ++high;
+    Window window = MakeWindow(low, high);
+    double last = 1;
+    for (int i = 0; i < kMostIterations; ++i) {
+      MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
+      Take(window, low, first, end);
+      const double worst = MeasureResiduals(laplacian_, first, end, spectrum_);
+      if (worst <= residual_ || worst > kWorthwhile * last) break;
+      last = worst;
+    }
+    return absl::OkStatus();
+  }
+
+  Window MakeWindow(int low, int high) const {
+    Window window;
+    const int width = high - low;
+    window.values = pairs_.eigenvalues.segment(low, width);
+    window.vectors =
+        RowMajorMatrix::Zero(structure_.n, Window::PaddedWidth(width));
+    for (int i = 0; i < structure_.n; ++i) {
+      const int v = structure_.order[i];
+      const float* row = pairs_.eigenvectors.row(v).data() + low;
+      double* out = window.vectors.row(i).data();
+      for (int k = 0; k < width; ++k) out[k] = sqrt_mass_[v] * row[k];
+    }
+    return window;
+  }
+
+  // The pairs [first, end) of a window that begins with pair `low`, orthogonal
+  // to the constant one.
+  void Take(const Window& window, int low, int first, int end) {
+    for (int k = first; k < end; ++k) {
+      auto phi = spectrum_.eigenvectors.col(k);
+      for (int i = 0; i < structure_.n; ++i) {
+        const int v = structure_.order[i];
+        phi[v] = window.vectors(i, k - low) / sqrt_mass_[v];
+      }
+      phi.array() -= laplacian_.M.dot(phi);
+      FixSign(phi);
+      spectrum_.eigenvalues[k] = window.values[k - low];
+    }
+  }
+
+  // Counts beyond the last pair; where it has equals there, below it, at the
+  // last gap that a count can tell.
+  absl::Status Count() {
+    const double margin = kCountableGap * spectrum_.eigenvalues[count_ - 1];
+    int pair = count_;
+    if (pair == pairs_.eigenvalues.size()) {
+      MARROW_RETURN_IF_ERROR(FactoriseNear(
+          spectrum_.eigenvalues[count_ - 1] + margin, factor_, cancel_));
+      if (factor_.negative_pivots() < count_)
+        return Disagreement(factor_.shift(), factor_.negative_pivots(), count_);
+      if (factor_.negative_pivots() > count_) --pair;
+    }
+    if (pair < pairs_.eigenvalues.size()) {
+      while (pair > 1 && Gap(pair) <= 4 * margin) --pair;
+      MARROW_RETURN_IF_ERROR(FactoriseBelow(pair));
+    }
+    spectrum_.bound = factor_.shift();
+    spectrum_.count_below_bound =
+        static_cast<uint32_t>(factor_.negative_pivots());
+    return absl::OkStatus();
+  }
+
+  const EigenPairs& pairs_;
+  const int count_;
+  const Laplacian& laplacian_;
+  const SupernodalStructure& structure_;
+  SupernodalFactor factor_;
+  const Eigen::VectorXd sqrt_mass_;
+  const double residual_;
+  const CancelToken& cancel_;
+  CertifiedSpectrum spectrum_;
+};
+
+// A dense solver has them all, so a bound is where the last one wanted ends.
+CertifiedSpectrum CertifyDensely(const Eigen::SparseMatrix<double>& A,
+                                 const Laplacian& laplacian, int count) {
+  const int n = static_cast<int>(A.rows());
+  const MatrixPairs all = SolveDensely(A, n);
+  CertifiedSpectrum spectrum;
+  spectrum.eigenvalues = all.values.head(count);
+  spectrum.eigenvalues[0] = 0;
+  spectrum.eigenvectors = laplacian.M.cwiseSqrt().cwiseInverse().asDiagonal() *
+                          all.vectors.leftCols(count);
+  spectrum.eigenvectors.col(0).setOnes();
+  for (int k = 1; k < count; ++k) {
+    auto phi = spectrum.eigenvectors.col(k);
+    phi.array() -= laplacian.M.dot(phi);
+    phi /= std::sqrt(phi.cwiseAbs2().dot(laplacian.M));
+    FixSign(phi);
+  }
+  spectrum.residuals.resize(count);
+  MeasureResiduals(laplacian, 0, count, spectrum);
+  int bounded = count;
+  const auto gap = [&](int pair) {
+    return all.values[pair] - all.values[pair - 1];
+  };
+  while (bounded > 1 && bounded < n &&
+         gap(bounded) <= kCountableGap * all.values[bounded])
+    --bounded;
+  spectrum.bound = bounded == n
+                       ? all.values[n - 1] * (1 + kCountableGap)
+                       : 0.5 * (all.values[bounded - 1] + all.values[bounded]);
+  spectrum.count_below_bound = bounded;
+  return spectrum;
+}
+
+absl::StatusOr<CertifiedSpectrum> CertifySparsely(
+    const CanonicalMesh& mesh, const EigenPairs& pairs,
+    const Eigen::SparseMatrix<double>& A, const Laplacian& laplacian, int count,
+    double residual, const CancelToken& cancel,
+    const ProgressCallback& progress) {
+  MARROW_ASSIGN_OR_RETURN(const SupernodalStructure structure,
+                          AnalyseStructure(A, mesh.mesh.positions.data(),
+                                           kMaxFactorBytes, 1, cancel));
+  progress(kAnalysisShare);
+  return Certifier(pairs, laplacian, structure, count, residual, cancel)
+      .Certify(progress);
+}
+
+}  // namespace
+
+uint32_t WithStrictGuards(uint32_t count) {
+  return count + std::clamp<uint32_t>(count / 4, 16, kMostGuards);
+}
+
+absl::StatusOr<CertifiedSpectrum> CertifySpectrum(
+    const CanonicalMesh& mesh, const EigenPairs& pairs, uint32_t wanted,
+    double residual, const CancelToken& cancel,
+    const ProgressCallback& progress) {
+  MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
+                          BuildLaplacian(mesh.mesh, cancel));
+  const Eigen::VectorXd scale = laplacian.M.cwiseSqrt().cwiseInverse();
+  const Eigen::SparseMatrix<double> A =
+      scale.asDiagonal() * laplacian.L * scale.asDiagonal();
+  const int n = static_cast<int>(A.rows());
+  const int count = static_cast<int>(std::min(pairs.NumPairs(), wanted + 1));
+  const ProgressCallback report = progress ? progress : [](double) {};
+  try {
+    absl::StatusOr<CertifiedSpectrum> spectrum =
+        n <= kDenseVertices || 2 * count > n
+            ? CertifyDensely(A, laplacian, count)
+            : CertifySparsely(mesh, pairs, A, laplacian, count, residual,
+                              cancel, report);
+    if (!spectrum.ok()) return spectrum.status();
+    spectrum->area = pairs.area;
+    spectrum->complete = count == n;
+    report(1);
+    return spectrum;
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("not enough memory for ", count,
+                     " eigen-pairs in double of ", n, " vertices"));
+  }
+}
+
+}  // namespace marrow
