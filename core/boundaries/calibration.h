@@ -45,6 +45,7 @@ inline constexpr Measures kStrengthWeights = {
 // likely than 7 to 3, a compromise of the Rand index (least at 0.6) and of the
 // Hamming distance (least at 0.8).
 inline constexpr double kLevelSalience[] = {0.93, 0.7, 0.3};
+inline constexpr double kAutomaticSalience = kLevelSalience[1];
 
 // Pieces are the leaves of the paper's tree of this depth at this kappa.
 // Deeper trees have more wrong boundaries to choose from and hardly more right
