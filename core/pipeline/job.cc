@@ -52,9 +52,9 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
                          body.bridges)} {}
 
-absl::Status EmitLevel(const Job& job, const SegmentTree& tree,
+absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,
                        uint32_t level) {
-  const Prepared& prepared = job.prepared;
+  const Prepared& prepared = to.prepared;
   const std::vector<uint32_t> face_segment = tree.FaceSegments(level);
   const std::vector<uint32_t> face_labels =
       LabelFaces(prepared.canonical, face_segment);
@@ -63,15 +63,15 @@ absl::Status EmitLevel(const Job& job, const SegmentTree& tree,
   const Skeleton skeleton =
       BuildSkeleton(prepared.canonical.mesh, prepared.adjacency, tree, level,
                     prepared.bridges);
-  return job.reporter.Took(
-      job.sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
+  return to.reporter.Took(
+      to.sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
 }
 
-absl::Status EmitTree(const Job& job,
+absl::Status EmitTree(const Telling& to,
                       std::shared_ptr<const SegmentedMesh> whole) {
-  MARROW_RETURN_IF_ERROR(job.reporter.Progress(Stage::kSegments, 1));
-  MARROW_RETURN_IF_ERROR(job.reporter.Took(job.sink.OnTree(whole->tree())));
-  return job.reporter.Took(job.sink.OnSegmentedMesh(std::move(whole)));
+  MARROW_RETURN_IF_ERROR(to.reporter.Progress(Stage::kSegments, 1));
+  MARROW_RETURN_IF_ERROR(to.reporter.Took(to.sink.OnTree(whole->tree())));
+  return to.reporter.Took(to.sink.OnSegmentedMesh(std::move(whole)));
 }
 
 }  // namespace marrow

@@ -89,6 +89,13 @@ struct Workspace {
   std::vector<std::unique_ptr<PreparedBody>> prepared_bodies;
 };
 
+// What is told, and whom.
+struct Telling {
+  const Prepared& prepared;
+  Reporter& reporter;
+  Sink& sink;
+};
+
 // What a method reads and whom it tells.
 struct Job {
   std::shared_ptr<const Workspace> workspace;
@@ -98,12 +105,15 @@ struct Job {
   const CancelToken& cancel;
   Reporter& reporter;
   Sink& sink;
+
+  operator Telling() const { return {prepared, reporter, sink}; }
 };
 
 // Labels and skeleton of a level, to the sink.
-absl::Status EmitLevel(const Job& job, const SegmentTree& tree, uint32_t level);
+absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,
+                       uint32_t level);
 // The whole tree, and the mesh to cut it again, to the sink.
-absl::Status EmitTree(const Job& job,
+absl::Status EmitTree(const Telling& to,
                       std::shared_ptr<const SegmentedMesh> whole);
 
 }  // namespace marrow

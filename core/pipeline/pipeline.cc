@@ -1,5 +1,6 @@
 #include "core/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -86,6 +87,18 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
                 options,   cancel,   reporter,
                 sink};
   return options.method == Method::kMerge ? MergeLevels(job) : SplitLevels(job);
+}
+
+absl::Status Replay(const std::shared_ptr<const SegmentedMesh>& mesh,
+                    const CancelToken& cancel, Sink& sink) {
+  Reporter reporter(sink, cancel);
+  MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(mesh->canonical())));
+  const SegmentTree& tree = mesh->tree();
+  const uint32_t levels = std::max(1u, tree.nodes.back().level);
+  for (uint32_t level = 1; level <= levels; ++level)
+    MARROW_RETURN_IF_ERROR(
+        EmitLevel({mesh->prepared(), reporter, sink}, tree, level));
+  return EmitTree({mesh->prepared(), reporter, sink}, mesh);
 }
 
 }  // namespace marrow

@@ -71,6 +71,11 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
                  const SegmentationOptions& options, EigenPairSource& pairs,
                  const CancelToken& cancel, Sink& sink);
 
+// Tells the sink again what Run() told of the mesh, in the same order and to
+// the last bit, progress aside. Errors: CANCELLED.
+absl::Status Replay(const std::shared_ptr<const SegmentedMesh>& mesh,
+                    const CancelToken& cancel, Sink& sink);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_PIPELINE_PIPELINE_H_

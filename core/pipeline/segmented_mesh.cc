@@ -31,9 +31,12 @@ const CanonicalMesh& SegmentedMesh::canonical() const {
   return workspace_->canonical;
 }
 
+const Prepared& SegmentedMesh::prepared() const {
+  return *workspace_->prepared;
+}
+
 absl::StatusOr<CutResult> SegmentedMesh::Cut(const CutSpec& spec) const {
   MARROW_ASSIGN_OR_RETURN(const TreeCut cut, cutter_.Apply(spec));
-  const Prepared& prepared = *workspace_->prepared;
   const uint32_t num_faces = canonical().mesh.NumFaces();
   SegmentCover cover;
   cover.place_of_face.reserve(num_faces);
@@ -58,11 +61,11 @@ absl::StatusOr<CutResult> SegmentedMesh::Cut(const CutSpec& spec) const {
   for (uint32_t f : canonical().face_map)
     ++result.segments[cover.place_of_face[f]].decoded_faces;
   result.face_labels = LabelFaces(canonical(), face_segment);
-  result.point_labels = LabelPoints(canonical(), prepared.adjacency,
-                                    prepared.areas, face_segment);
+  result.point_labels = LabelPoints(canonical(), prepared().adjacency,
+                                    prepared().areas, face_segment);
   result.skeleton =
-      BuildSkeleton(canonical().mesh, prepared.adjacency, cover,
-                    tree_.nodes[0].medial_structure, prepared.bridges);
+      BuildSkeleton(canonical().mesh, prepared().adjacency, cover,
+                    tree_.nodes[0].medial_structure, prepared().bridges);
   return result;
 }
 
@@ -79,8 +82,8 @@ CutResult::Segment SegmentedMesh::Measure(
   }
   SegmentNode node;
   node.faces = faces;
-  MeasureNode(canonical().mesh, workspace_->prepared->areas,
-              canonical().report.area, node);
+  MeasureNode(canonical().mesh, prepared().areas, canonical().report.area,
+              node);
   measured.area = node.area;
   measured.centroid = node.centroid;
   measured.medial_structure = MedialStructure(faces);
@@ -107,6 +110,13 @@ std::vector<uint32_t> SegmentedMesh::MedialStructure(
       workspace_->prepared_bodies[b]->context(), own, options_);
   for (uint32_t& v : vertices) v = body.vertices[v];
   return vertices;
+}
+
+uint32_t SegmentedMesh::EigenPairCount() const {
+  uint32_t most = 0;
+  for (const auto& body : workspace_->prepared_bodies)
+    most = std::max(most, body->context().pairs.NumPairs() - 1);
+  return most;
 }
 
 uint64_t SegmentedMesh::Bytes() const {

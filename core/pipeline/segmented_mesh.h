@@ -17,6 +17,7 @@
 
 namespace marrow {
 
+struct Prepared;
 struct Workspace;
 
 // A cut of the tree as it is told: labels in the order of the payload, the
@@ -51,6 +52,7 @@ class SegmentedMesh {
   SegmentedMesh& operator=(const SegmentedMesh&) = delete;
 
   const CanonicalMesh& canonical() const;
+  const Prepared& prepared() const;
   const SegmentTree& tree() const { return tree_; }
 
   // REQUIRES: ValidateCut() of the options it was segmented with (options.h).
@@ -58,6 +60,8 @@ class SegmentedMesh {
   // nanoseconds a vertex and eigen-pair.
   absl::StatusOr<CutResult> Cut(const CutSpec& spec) const;
 
+  // Of its largest body, without the constant one.
+  uint32_t EigenPairCount() const;
   // Memory it holds, the eigen-pairs among it; good to a fifth.
   uint64_t Bytes() const;
 
