@@ -80,22 +80,9 @@ absl::Status ParseLevels(const v1::OutputSelection& message, uint32_t deepest,
 absl::StatusOr<CutSpec> ParseCut(const v1::Cut& message,
                                  const SegmentationOptions& options) {
   CutSpec cut;
-  switch (message.by_case()) {
-    case v1::Cut::kLevel:
-      cut.by = CutSpec::By::kLevel;
-      cut.level = message.level();
-      break;
-    case v1::Cut::kSegments:
-      cut.by = CutSpec::By::kSegments;
-      cut.segments = message.segments();
-      break;
-    case v1::Cut::kSalience:
-      cut.by = CutSpec::By::kSalience;
-      cut.salience = message.salience();
-      break;
-    default:
-      break;
-  }
+  if (message.has_level()) cut = CutSpec::AtLevel(message.level());
+  if (message.has_segments()) cut = CutSpec::Into(message.segments());
+  if (message.has_salience()) cut = CutSpec::AtSalience(message.salience());
   cut.closed.assign(message.closed().begin(), message.closed().end());
   cut.open.assign(message.open().begin(), message.open().end());
   MARROW_RETURN_IF_ERROR(ValidateCut(cut, options));

@@ -52,6 +52,27 @@ std::vector<uint32_t> LeastOfEqual(const std::vector<Key>& key) {
 
 }  // namespace
 
+CutSpec CutSpec::AtLevel(uint32_t level) {
+  CutSpec spec;
+  spec.by = By::kLevel;
+  spec.level = level;
+  return spec;
+}
+
+CutSpec CutSpec::Into(uint32_t segments) {
+  CutSpec spec;
+  spec.by = By::kSegments;
+  spec.segments = segments;
+  return spec;
+}
+
+CutSpec CutSpec::AtSalience(double salience) {
+  CutSpec spec;
+  spec.by = By::kSalience;
+  spec.salience = salience;
+  return spec;
+}
+
 TreeCutter::TreeCutter(const SegmentTree& tree,
                        std::vector<uint32_t> piece_of_face, MergeOrder order,
                        std::vector<double> thresholds)

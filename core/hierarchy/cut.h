@@ -35,6 +35,10 @@ struct CutSpec {
   // open one is split into its children at least, and so are those above it.
   std::vector<uint32_t> closed;
   std::vector<uint32_t> open;
+
+  static CutSpec AtLevel(uint32_t level);
+  static CutSpec Into(uint32_t segments);
+  static CutSpec AtSalience(double salience);
 };
 
 // Segments that cover the mesh once.
