@@ -37,7 +37,7 @@ void AddToKey(const CutSpec& cut, DigestBuilder& key) {
 
 absl::Status AppendCut(const SegmentedMesh& mesh, const CutSpec& spec,
                        const Outputs& outputs, SegmentJob& job) {
-  MARROW_ASSIGN_OR_RETURN(const CutResult cut, mesh.Cut(spec));
+  MARROW_ASSIGN_OR_RETURN(const CutResult cut, mesh.Cut(spec, *job.cancel()));
   Append(CutEvents(mesh, cut), job);
   if (outputs.face_labels) {
     Append(LabelEvents(kCutLevel, v1::LABEL_DOMAIN_FACE, cut.face_labels), job);

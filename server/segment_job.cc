@@ -158,7 +158,7 @@ class JobSink : public Sink {
 std::string SegmentJobKey(const MeshDigest& mesh,
                           const SegmentParameters& parameters) {
   const Outputs& outputs = parameters.outputs;
-  DigestBuilder key("marrow segment job 2");
+  DigestBuilder key("marrow segment job 1");
   key.AddString(ResultCache::KeyOf(mesh, parameters.options).Hex());
   key.AddU64(outputs.face_labels);
   key.AddU64(outputs.point_labels);

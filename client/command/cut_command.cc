@@ -30,7 +30,7 @@ absl::StatusOr<CutAnswer> SegmentAnew(const CutArguments& arguments,
       Segmentation answer,
       call.client().Segment(payload, request, arguments.service.Timeout(),
                             [](const v1::SegmentEvent&) {}));
-  return CutAnswer{*std::move(answer.cut), std::move(answer.timings),
+  return CutAnswer{std::move(answer.cut).value(), std::move(answer.timings),
                    std::move(answer.cache)};
 }
 

@@ -35,7 +35,8 @@ const Prepared& SegmentedMesh::prepared() const {
   return *workspace_->prepared;
 }
 
-absl::StatusOr<CutResult> SegmentedMesh::Cut(const CutSpec& spec) const {
+absl::StatusOr<CutResult> SegmentedMesh::Cut(const CutSpec& spec,
+                                             const CancelToken& cancel) const {
   MARROW_ASSIGN_OR_RETURN(const TreeCut cut, cutter_.Apply(spec));
   const uint32_t num_faces = canonical().mesh.NumFaces();
   SegmentCover cover;
@@ -54,6 +55,7 @@ absl::StatusOr<CutResult> SegmentedMesh::Cut(const CutSpec& spec) const {
   CutResult result;
   result.salience = cut.salience;
   for (size_t s = 0; s < cut.segments.size(); ++s) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     result.segments.push_back(Measure(cut.segments[s], faces[s]));
     cover.ids.push_back(cut.segments[s].id);
     cover.centres.push_back(result.segments[s].centroid);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
 #include "core/hierarchy/cut.h"
 #include "core/hierarchy/merged_pieces.h"
 #include "core/hierarchy/segment_tree.h"
@@ -56,9 +57,10 @@ class SegmentedMesh {
   const SegmentTree& tree() const { return tree_; }
 
   // REQUIRES: ValidateCut() of the options it was segmented with (options.h).
-  // Errors: those of TreeCutter::Apply(). Time: linear in the mesh, some
-  // nanoseconds a vertex and eigen-pair.
-  absl::StatusOr<CutResult> Cut(const CutSpec& spec) const;
+  // Errors: those of TreeCutter::Apply(); CANCELLED. Time: linear in the mesh;
+  // most of it goes to the medial structures of segments that are no nodes.
+  absl::StatusOr<CutResult> Cut(const CutSpec& spec,
+                                const CancelToken& cancel) const;
 
   // Of its largest body, without the constant one.
   uint32_t EigenPairCount() const;

@@ -117,7 +117,7 @@ TEST_F(MarrowServerTest, AServerAndTheEmbeddedServiceGiveTheSameFiles) {
                 .code,
             0);
   const std::vector<std::string> names = ListFolder(File("remote"));
-  EXPECT_EQ(names.size(), 8u);
+  EXPECT_EQ(names.size(), 10u);
   ASSERT_EQ(ListFolder(File("embedded")), names);
   for (const std::string& name : names) {
     const std::string a = ReadFile(File("remote/" + name));

@@ -107,7 +107,9 @@ class EveryCut : public ::testing::TestWithParam<std::tuple<size_t, Method>> {
   const RecordingSink run_ = RunOn(Meshes()[std::get<0>(GetParam())].mesh,
                                    Options(std::get<1>(GetParam())));
   const SegmentedMesh& mesh_ = *run_.segmented;
-  CutResult Cut(const CutSpec& spec) const { return *mesh_.Cut(spec); }
+  CutResult Cut(const CutSpec& spec) const {
+    return *mesh_.Cut(spec, CancelToken());
+  }
 };
 
 TEST_P(EveryCut, LevelsAreThoseThatWereStreamed) {
@@ -174,10 +176,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SegmentedMeshTest, SaliencesCutBetweenTheLevels) {
   for (const Named& named : Meshes()) {
     const RecordingSink run = RunOn(named.mesh, Options(Method::kMerge));
-    CutResult finer = *run.segmented->Cut(CutSpec::AtSalience(0));
+    CutResult finer =
+        *run.segmented->Cut(CutSpec::AtSalience(0), CancelToken());
     ExpectSoundCut(*run.segmented, finer);
     for (double salience : {0.2, 0.5, 0.8, 0.97, 1.0}) {
-      const CutResult cut = *run.segmented->Cut(CutSpec::AtSalience(salience));
+      const CutResult cut =
+          *run.segmented->Cut(CutSpec::AtSalience(salience), CancelToken());
       ExpectSoundCut(*run.segmented, cut);
       EXPECT_TRUE(Refines(finer, cut)) << salience;
       for (const CutResult::Segment& segment : cut.segments)
@@ -192,8 +196,8 @@ TEST(SegmentedMeshTest, SaliencesCutBetweenTheLevels) {
 TEST(SegmentedMeshTest, SegmentsThatAreNoNodesAreMeasuredAsNodes) {
   const RecordingSink deep = RunOn(LimbCross(4), Options(Method::kMerge, 3));
   const RecordingSink flat = RunOn(LimbCross(4), Options(Method::kMerge, 1));
-  const CutResult nodes = *deep.segmented->Cut({});
-  const CutResult anew = *flat.segmented->Cut({});
+  const CutResult nodes = *deep.segmented->Cut({}, CancelToken());
+  const CutResult anew = *flat.segmented->Cut({}, CancelToken());
   std::map<uint32_t, const CutResult::Segment*> by_face;
   for (size_t f = 0; f < nodes.face_labels.size(); ++f)
     for (const CutResult::Segment& segment : nodes.segments)
@@ -215,7 +219,15 @@ TEST(SegmentedMeshTest, ErrorsNameTheField) {
   const RecordingSink run = RunOn(LimbCross(3), Options(Method::kMerge));
   CutSpec spec;
   spec.open = {1000};
-  EXPECT_EQ(FieldOf(run.segmented->Cut(spec).status()), "cut.open[0]");
+  EXPECT_EQ(FieldOf(run.segmented->Cut(spec, CancelToken()).status()),
+            "cut.open[0]");
+}
+
+TEST(SegmentedMeshTest, StopsOnceCancelled) {
+  const RecordingSink run = RunOn(LimbCross(3), Options(Method::kMerge));
+  CancelToken cancel;
+  cancel.Cancel();
+  EXPECT_TRUE(absl::IsCancelled(run.segmented->Cut({}, cancel).status()));
 }
 
 TEST(SegmentedMeshTest, KnowsItsMemory) {
