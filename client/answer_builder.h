@@ -1,4 +1,4 @@
-// The events of one Segment call -> a Segmentation.
+// The events of one Segment or Cut call -> what they tell.
 #ifndef MARROW_CLIENT_ANSWER_BUILDER_H_
 #define MARROW_CLIENT_ANSWER_BUILDER_H_
 
@@ -9,6 +9,8 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/answer_parts.h"
+#include "client/cut_builder.h"
 #include "client/segmentation.h"
 #include "marrow/v1/segmentation_service.pb.h"
 
@@ -30,6 +32,8 @@ class AnswerBuilder {
   // Call once, after the stream ended well. Faces and vertices are those of
   // the payload as it decodes.
   absl::StatusOr<Segmentation> Finish();
+  // The same for the stream of a Cut call.
+  absl::StatusOr<CutAnswer> FinishCut();
 
  private:
   absl::Status AddLevel(const v1::Level& level);
@@ -42,10 +46,8 @@ class AnswerBuilder {
   absl::Status AddCompleted(const v1::Completed& completed);
   absl::StatusOr<Level*> LevelOf(uint32_t level);
   absl::Status CheckTree() const;
-  absl::Status CheckLevel(const Level& level) const;
 
-  const uint32_t num_faces_;
-  const uint32_t num_points_;
+  const PayloadSize size_;
   uint64_t sequence_ = 0;
   bool completed_ = false;
   std::map<uint32_t, SegmentNode> nodes_;
@@ -55,6 +57,7 @@ class AnswerBuilder {
   bool level_ended_ = false;
   uint32_t last_node_ = kNone;
   size_t medial_budget_ = 0;
+  CutBuilder cut_;
   nlohmann::json report_ = nlohmann::json::object();
   nlohmann::json warnings_ = nlohmann::json::array();
   nlohmann::json timings_ = nlohmann::json::object();

@@ -38,6 +38,13 @@ v1::MeshDigest DigestOf(const std::string& bytes) {
   return result;
 }
 
+v1::OutputSelection AllLabels() {
+  v1::OutputSelection outputs;
+  outputs.add_label_domains(v1::LABEL_DOMAIN_FACE);
+  outputs.add_label_domains(v1::LABEL_DOMAIN_VERTEX);
+  return outputs;
+}
+
 // Reads a stream to its end. What the client itself finds wrong comes before
 // the status with which the call then ends.
 template <typename Event, typename Take>
@@ -78,12 +85,10 @@ Client::Client(std::shared_ptr<grpc::Channel> channel)
       capabilities_(v1::CapabilitiesService::NewStub(channel_)) {}
 
 absl::StatusOr<Segmentation> Client::Segment(
-    const Payload& payload, const v1::SegmentationOptions& options,
+    const Payload& payload, const v1::SegmentRequest& parameters,
     absl::Duration timeout, const SegmentObserver& observer) {
-  v1::SegmentRequest request;
-  *request.mutable_options() = options;
-  request.mutable_outputs()->add_label_domains(v1::LABEL_DOMAIN_FACE);
-  request.mutable_outputs()->add_label_domains(v1::LABEL_DOMAIN_VERTEX);
+  v1::SegmentRequest request = parameters;
+  *request.mutable_outputs() = AllLabels();
   std::unique_ptr<AnswerBuilder> builder;
   const Attempt attempt = [&](const v1::MeshSource& source,
                               absl::Time deadline) {
@@ -99,7 +104,26 @@ absl::StatusOr<Segmentation> Client::Segment(
     });
   };
   MARROW_RETURN_IF_ERROR(WithMesh(payload, absl::Now() + timeout, attempt));
-  return builder->Finish();
+  MARROW_ASSIGN_OR_RETURN(Segmentation answer, builder->Finish());
+  if (request.has_cut() && !answer.cut.has_value()) {
+    return BrokenAnswer("it lacks the cut that was asked for");
+  }
+  return answer;
+}
+
+absl::StatusOr<CutAnswer> Client::Cut(const Payload& payload,
+                                      const v1::CutRequest& parameters,
+                                      absl::Duration timeout) {
+  v1::CutRequest request = parameters;
+  *request.mutable_outputs() = AllLabels();
+  *request.mutable_mesh_digest() = DigestOf(payload.draco);
+  AnswerBuilder builder(payload.num_faces, payload.num_points);
+  CallGroup::Context context(calls_, absl::Now() + timeout);
+  auto reader = segmentation_->Cut(context.get(), request);
+  MARROW_RETURN_IF_ERROR(ReadAll(
+      context, *reader,
+      [&](const v1::SegmentEvent& event) { return builder.Add(event); }));
+  return builder.FinishCut();
 }
 
 absl::StatusOr<v1::InspectMeshResponse> Client::Inspect(

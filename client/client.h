@@ -65,11 +65,19 @@ class Client {
   explicit Client(std::shared_ptr<grpc::Channel> channel);
 
   // `timeout` bounds each function as a whole, uploads included.
-  // Labels are those of the payload's faces and points as it decodes.
+  // Labels are those of the payload's faces and points as it decodes. Of
+  // `parameters`, options and cut are heeded; mesh and outputs are set by the
+  // call.
   absl::StatusOr<Segmentation> Segment(const Payload& payload,
-                                       const v1::SegmentationOptions& options,
+                                       const v1::SegmentRequest& parameters,
                                        absl::Duration timeout,
                                        const SegmentObserver& observer);
+  // Another cut of what was segmented with the same options; nothing is
+  // uploaded. Of `parameters`, options and cut are heeded. NOT_FOUND, reason
+  // NOT_CACHED, where the server does not have it any more.
+  absl::StatusOr<CutAnswer> Cut(const Payload& payload,
+                                const v1::CutRequest& parameters,
+                                absl::Duration timeout);
   absl::StatusOr<v1::InspectMeshResponse> Inspect(const Payload& payload,
                                                   absl::Duration timeout);
   // The mesh of `parameters` is set by the call.

@@ -69,10 +69,13 @@ json TimingsJson(const v1::Timings& timings) { return NumbersJson(timings); }
 
 json CacheJson(const v1::SpectrumUse& use) {
   json result = NumbersJson(use);
-  result["outcome"] =
-      EnumName(v1::CacheOutcome_descriptor()->FindValueByNumber(use.outcome()),
-               "CACHE_OUTCOME_");
+  result["outcome"] = OutcomeName(use.outcome());
   return result;
+}
+
+std::string OutcomeName(v1::CacheOutcome outcome) {
+  return EnumName(v1::CacheOutcome_descriptor()->FindValueByNumber(outcome),
+                  "CACHE_OUTCOME_");
 }
 
 std::string StageName(v1::Stage stage) {

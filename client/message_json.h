@@ -18,6 +18,9 @@ nlohmann::json TimingsJson(const v1::Timings& timings);
 // outcome ("hit", "miss" or "joined"), solver_runs, eigen_pairs.
 nlohmann::json CacheJson(const v1::SpectrumUse& use);
 
+// "hit", "miss", "joined".
+std::string OutcomeName(v1::CacheOutcome outcome);
+
 // "spectrum", "one_segment": an enum's name without its prefix, in lower case;
 // "unknown" for a value that this client does not know.
 std::string StageName(v1::Stage stage);

@@ -1,10 +1,11 @@
-// The answer to one Segment call, in the order of the user's own file.
+// The answers to Segment and Cut, in the order of the user's own file.
 #ifndef MARROW_CLIENT_SEGMENTATION_H_
 #define MARROW_CLIENT_SEGMENTATION_H_
 
 #include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,16 +54,38 @@ struct Level {
   Skeleton skeleton;
 };
 
+// A cut of the tree: segments that cover the mesh once.
+struct Cut {
+  // Ascending ids. One with an id below `tree_nodes` is that node of the tree;
+  // any other has the deepest node that holds it as parent.
+  std::vector<SegmentNode> segments;
+  uint32_t tree_nodes = 0;
+  double salience = 0;  // what it was cut at; 0 in the paper's method
+  Level level;          // its labels and its skeleton; level.level is 0
+};
+
+// The answer to one Cut call.
+struct CutAnswer {
+  Cut cut;
+  nlohmann::json timings;
+  nlohmann::json cache;
+};
+
 struct Segmentation {
   std::vector<SegmentNode> nodes;  // ordered by id
   std::vector<Level> levels;       // 1, 2, ...; never empty
+  std::optional<Cut> cut;          // where it was asked for
   nlohmann::json report;           // what the server found in the mesh
   nlohmann::json timings;          // seconds a stage
   nlohmann::json cache;            // what was computed and what was kept
 
-  // The level that the automatic cut shows: 2, or 1 where there is no 2.
-  const Level& AutomaticCut() const {
+  // The level nearest to the automatic cut: 2, or 1 where there is no 2.
+  const Level& AutomaticLevel() const {
     return levels.size() > 1 ? levels[1] : levels[0];
+  }
+  // Labels and skeleton of the cut; without one, of the automatic level.
+  const Level& CutLevel() const {
+    return cut.has_value() ? cut->level : AutomaticLevel();
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/boundaries/calibration.h"
 #include "server/unary_call.h"
 
 namespace marrow {
@@ -43,6 +44,8 @@ v1::GetCapabilitiesResponse Describe(const ServerOptions& options) {
   for (const char* bitstream : {"2.0", "2.1", "2.2"}) {
     response.add_draco_bitstreams(bitstream);
   }
+  response.set_automatic_salience(kAutomaticSalience);
+  response.set_result_cache_bytes(options.result_cache_bytes);
   return response;
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -75,8 +76,9 @@ void SetSplit(const SegmentNode& node, v1::Split* split) {
 template <typename Part>
 class Spreader {
  public:
-  Spreader(uint32_t level, Part* (v1::SegmentEvent::*part)())
-      : level_(level), part_(part) {
+  // `begin` fills what every message has.
+  Spreader(Part* (v1::SegmentEvent::*part)(), std::function<void(Part*)> begin)
+      : part_(part), begin_(std::move(begin)) {
     Open();
   }
 
@@ -92,11 +94,11 @@ class Spreader {
  private:
   void Open() {
     bytes_ = 0;
-    (events_.emplace_back().*part_)()->set_level(level_);
+    begin_((events_.emplace_back().*part_)());
   }
 
-  const uint32_t level_;
   Part* (v1::SegmentEvent::*const part_)();
+  const std::function<void(Part*)> begin_;
   size_t bytes_ = 0;
   std::vector<v1::SegmentEvent> events_;
 };
@@ -115,6 +117,37 @@ std::vector<uint32_t> CountDecodedFaces(const CanonicalMesh& mesh) {
   std::vector<uint32_t> counts(mesh.mesh.NumFaces(), 0);
   for (const uint32_t face : mesh.face_map) ++counts[face];
   return counts;
+}
+
+// More than one where the medial structure is larger than a chunk. Of a node of
+// the tree and of a cut's segment.
+template <typename Segment>
+std::vector<v1::Node> ToNodes(const Segment& segment, uint32_t face_count,
+                              const std::vector<uint32_t>& point_of_vertex) {
+  v1::Node first;
+  first.set_id(segment.id);
+  if (segment.parent != kNoIndex) first.set_parent(segment.parent);
+  first.set_level(segment.level);
+  first.set_area(segment.area);
+  SetVector(segment.centroid, first.mutable_centroid());
+  first.set_face_count(face_count);
+  first.set_salience(segment.salience);
+
+  std::vector<uint32_t> points;
+  points.reserve(segment.medial_structure.size());
+  for (const uint32_t v : segment.medial_structure) {
+    points.push_back(point_of_vertex[v]);
+  }
+  std::sort(points.begin(), points.end());
+
+  std::vector<v1::Node> parts{std::move(first)};
+  constexpr size_t kPointsAPart = kChunkBytes / 2 / sizeof(uint32_t);
+  for (size_t i = 0; i < points.size(); i += kPointsAPart) {
+    if (i > 0) parts.emplace_back().set_id(segment.id);
+    SetPacked(&points[i], std::min(kPointsAPart, points.size() - i),
+              parts.back().mutable_medial_structure());
+  }
+  return parts;
 }
 
 }  // namespace
@@ -191,37 +224,16 @@ LevelEvents::LevelEvents(const CanonicalMesh& mesh)
       decoded_faces_(CountDecodedFaces(mesh)) {}
 
 std::vector<v1::Node> LevelEvents::ToNodes(const SegmentNode& node) const {
-  v1::Node first;
-  first.set_id(node.id);
-  if (node.parent != kNoIndex) first.set_parent(node.parent);
-  first.set_level(node.level);
-  first.set_area(node.area);
-  SetVector(node.centroid, first.mutable_centroid());
   uint32_t faces = 0;
   for (const uint32_t face : node.faces) faces += decoded_faces_[face];
-  first.set_face_count(faces);
-  first.set_salience(node.salience);
-
-  std::vector<uint32_t> points;
-  points.reserve(node.medial_structure.size());
-  for (const uint32_t v : node.medial_structure) {
-    points.push_back(point_of_vertex_[v]);
-  }
-  std::sort(points.begin(), points.end());
-
-  std::vector<v1::Node> parts{std::move(first)};
-  constexpr size_t kPointsAPart = kChunkBytes / 2 / sizeof(uint32_t);
-  for (size_t i = 0; i < points.size(); i += kPointsAPart) {
-    if (i > 0) parts.emplace_back().set_id(node.id);
-    SetPacked(&points[i], std::min(kPointsAPart, points.size() - i),
-              parts.back().mutable_medial_structure());
-  }
-  return parts;
+  return marrow::ToNodes(node, faces, point_of_vertex_);
 }
 
 std::vector<v1::SegmentEvent> LevelEvents::OfLevel(const SegmentTree& tree,
                                                    uint32_t level) {
-  Spreader<v1::Level> spreader(level, &v1::SegmentEvent::mutable_level);
+  Spreader<v1::Level> spreader(
+      &v1::SegmentEvent::mutable_level,
+      [level](v1::Level* message) { message->set_level(level); });
   for (; nodes_sent_ < tree.nodes.size() &&
          tree.nodes[nodes_sent_].level <= level;
        ++nodes_sent_) {
@@ -273,11 +285,32 @@ std::vector<v1::SegmentEvent> LabelEvents(uint32_t level,
 
 std::vector<v1::SegmentEvent> SkeletonEvents(uint32_t level,
                                              const Skeleton& skeleton) {
-  Spreader<v1::Skeleton> spreader(level, &v1::SegmentEvent::mutable_skeleton);
+  Spreader<v1::Skeleton> spreader(
+      &v1::SegmentEvent::mutable_skeleton,
+      [level](v1::Skeleton* message) { message->set_level(level); });
   for (const Joint& joint : skeleton.joints) {
     v1::Joint message = ToJoint(joint);
     const size_t bytes = message.ByteSizeLong();
     *spreader.For(bytes)->add_joints() = std::move(message);
+  }
+  return spreader.Take();
+}
+
+std::vector<v1::SegmentEvent> CutEvents(const SegmentedMesh& mesh,
+                                        const CutResult& cut) {
+  Spreader<v1::CutSegments> spreader(
+      &v1::SegmentEvent::mutable_cut, [&](v1::CutSegments* message) {
+        message->set_tree_nodes(
+            static_cast<uint32_t>(mesh.tree().nodes.size()));
+        message->set_salience(cut.salience);
+      });
+  const std::vector<uint32_t> point_of_vertex = PointOfVertex(mesh.canonical());
+  for (const CutResult::Segment& segment : cut.segments) {
+    for (v1::Node& node :
+         ToNodes(segment, segment.decoded_faces, point_of_vertex)) {
+      const size_t bytes = node.ByteSizeLong();
+      *spreader.For(bytes)->add_segments() = std::move(node);
+    }
   }
   return spreader.Take();
 }

@@ -10,6 +10,7 @@
 #include "core/hierarchy/segment_tree.h"
 #include "core/mesh/canonical_mesh.h"
 #include "core/pipeline/pipeline.h"
+#include "core/pipeline/segmented_mesh.h"
 #include "core/skeleton/skeleton.h"
 #include "core/spectrum/certified_spectrum.h"
 #include "marrow/v1/mesh.pb.h"
@@ -47,7 +48,6 @@ class LevelEvents {
   void AddLastSplits(const SegmentTree& tree, v1::Completed* completed) const;
 
  private:
-  // More than one where the medial structure is larger than a chunk.
   std::vector<v1::Node> ToNodes(const SegmentNode& node) const;
 
   const std::vector<uint32_t> point_of_vertex_;
@@ -56,12 +56,16 @@ class LevelEvents {
   std::set<uint32_t> without_split_;
 };
 
-// The labels of one level in chunks.
+// The labels of one level in chunks; 0 is the cut.
 std::vector<v1::SegmentEvent> LabelEvents(uint32_t level,
                                           v1::LabelDomain domain,
                                           const std::vector<uint32_t>& labels);
 
-// The skeleton of one level in one or more events.
+// The segments of a cut in one or more events.
+std::vector<v1::SegmentEvent> CutEvents(const SegmentedMesh& mesh,
+                                        const CutResult& cut);
+
+// The skeleton of one level in one or more events; 0 is the cut.
 std::vector<v1::SegmentEvent> SkeletonEvents(uint32_t level,
                                              const Skeleton& skeleton);
 

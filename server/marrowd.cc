@@ -101,6 +101,12 @@ void AddLimits(CLI::App& app, ServerOptions& options) {
       ->transform(bytes)
       ->check(CheckSize)
       ->capture_default_str();
+  app.add_option("--result-cache-bytes", options.result_cache_bytes,
+                 "Memory for results of earlier calls, whose trees Cut cuts "
+                 "again; 0 keeps none")
+      ->transform(bytes)
+      ->check(CheckSize)
+      ->capture_default_str();
   app.add_option("--mesh-store-bytes", options.mesh_store_bytes,
                  "Memory for uploaded meshes; at least --max-mesh-bytes")
       ->transform(bytes)

@@ -1,6 +1,7 @@
 #include "server/request_parser.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -76,6 +77,18 @@ absl::Status ParseLevels(const v1::OutputSelection& message, uint32_t deepest,
   return absl::OkStatus();
 }
 
+absl::StatusOr<CutSpec> ParseCut(const v1::Cut& message,
+                                 const SegmentationOptions& options) {
+  CutSpec cut;
+  if (message.has_level()) cut = CutSpec::AtLevel(message.level());
+  if (message.has_segments()) cut = CutSpec::Into(message.segments());
+  if (message.has_salience()) cut = CutSpec::AtSalience(message.salience());
+  cut.closed.assign(message.closed().begin(), message.closed().end());
+  cut.open.assign(message.open().begin(), message.open().end());
+  MARROW_RETURN_IF_ERROR(ValidateCut(cut, options));
+  return cut;
+}
+
 absl::Status CheckSize(uint64_t size_bytes, const ServerOptions& limits,
                        const std::string& field) {
   const uint64_t most = limits.mesh_limits.max_bytes;
@@ -114,6 +127,21 @@ absl::StatusOr<SegmentParameters> ParseSegmentParameters(
   MARROW_RETURN_IF_ERROR(ParseLevels(
       request.outputs(), parameters.options.levels, parameters.outputs));
   parameters.outputs.skeletons = !request.outputs().omit_skeletons();
+  if (request.has_cut()) {
+    MARROW_ASSIGN_OR_RETURN(parameters.cut,
+                            ParseCut(request.cut(), parameters.options));
+  }
+  return parameters;
+}
+
+absl::StatusOr<SegmentParameters> ParseCutParameters(
+    const v1::CutRequest& request) {
+  SegmentParameters parameters;
+  MARROW_ASSIGN_OR_RETURN(parameters.options, ParseOptions(request.options()));
+  MARROW_RETURN_IF_ERROR(ParseDomains(request.outputs(), parameters.outputs));
+  parameters.outputs.skeletons = !request.outputs().omit_skeletons();
+  MARROW_ASSIGN_OR_RETURN(parameters.cut,
+                          ParseCut(request.cut(), parameters.options));
   return parameters;
 }
 

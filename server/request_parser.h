@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "core/hierarchy/cut.h"
 #include "core/pipeline/options.h"
 #include "marrow/v1/mesh.pb.h"
 #include "marrow/v1/segmentation_service.pb.h"
@@ -28,10 +30,15 @@ struct Outputs {
 struct SegmentParameters {
   SegmentationOptions options;
   Outputs outputs;
+  std::optional<CutSpec> cut;
 };
 
 absl::StatusOr<SegmentParameters> ParseSegmentParameters(
     const v1::SegmentRequest& request);
+
+// `cut` is there. The mesh is parsed apart.
+absl::StatusOr<SegmentParameters> ParseCutParameters(
+    const v1::CutRequest& request);
 
 // `field` is what the request calls the number; absent means the default.
 absl::StatusOr<uint32_t> ParseEigenPairs(bool present, uint32_t value,

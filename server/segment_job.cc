@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/cut_job.h"
 #include "server/event_builder.h"
 #include "server/mesh_warnings.h"
 #include "server/run_guarded.h"
@@ -97,6 +98,19 @@ class JobSink : public Sink {
     return Going();
   }
 
+  bool OnSegmentedMesh(std::shared_ptr<const SegmentedMesh> mesh) override {
+    result_ = std::move(mesh);
+    if (parameters_.cut.has_value()) {
+      status_ = AppendCut(*result_, *parameters_.cut, outputs_, job_);
+    }
+    return status_.ok() && Going();
+  }
+
+  // What all cuts are made from; null where the pipeline failed.
+  const std::shared_ptr<const SegmentedMesh>& result() const { return result_; }
+  // Error of the sink's own.
+  const absl::Status& status() const { return status_; }
+
   // The last event. REQUIRES: the pipeline succeeded.
   v1::SegmentEvent TakeCompleted(const MeshDigest& mesh_digest,
                                  const JobEigenPairs& pairs,
@@ -135,41 +149,52 @@ class JobSink : public Sink {
   Clock::time_point mesh_ready_;
   std::optional<Clock::time_point> first_level_;
   v1::SegmentEvent completed_;
+  std::shared_ptr<const SegmentedMesh> result_;
+  absl::Status status_;
 };
 
 }  // namespace
 
 std::string SegmentJobKey(const MeshDigest& mesh,
                           const SegmentParameters& parameters) {
-  const SegmentationOptions& options = parameters.options;
   const Outputs& outputs = parameters.outputs;
   DigestBuilder key("marrow segment job 1");
-  key.AddString(mesh.sha256.Hex());
-  key.AddU64(static_cast<uint64_t>(options.method));
-  for (const double value : {options.split.kappa, options.split.delta,
-                             options.split.epsilon, options.split.tolerance}) {
-    key.Add(&value, sizeof(value));
-  }
-  key.AddU64(options.eigen_pairs);
-  key.AddU64(options.levels);
+  key.AddString(ResultCache::KeyOf(mesh, parameters.options).Hex());
   key.AddU64(outputs.face_labels);
   key.AddU64(outputs.point_labels);
   key.AddU64(outputs.skeletons);
+  key.AddU64(outputs.levels.size());
   for (const uint32_t level : outputs.levels) key.AddU64(level);
+  key.AddU64(parameters.cut.has_value());
+  if (parameters.cut.has_value()) AddToKey(*parameters.cut, key);
   return key.Finish().Hex();
 }
 
 void RunSegmentJob(ServiceContext& context, const Payload& payload,
                    const SegmentParameters& parameters, SegmentJob& job) {
   const Clock::time_point begin = Clock::now();
+  const Digest key = ResultCache::KeyOf(payload.digest, parameters.options);
+  const std::shared_ptr<const SegmentedMesh> kept = context.results.Find(key);
   JobEigenPairs pairs(context.spectra);
   JobSink sink(parameters, job);
   const absl::Status status = RunGuarded(*job.cancel(), [&] {
+    if (kept != nullptr) return Replay(kept, *job.cancel(), sink);
     return context.engine.run(*payload.bytes, context.options.mesh_limits,
                               parameters.options, pairs, *job.cancel(), sink);
   });
-  if (!status.ok()) return job.Fail(status);
-  job.Complete(sink.TakeCompleted(payload.digest, pairs, begin));
+  if (kept == nullptr && sink.result() != nullptr) {
+    context.results.Insert(key, sink.result());
+  }
+  const absl::Status failed = sink.status().ok() ? status : sink.status();
+  if (!failed.ok()) return job.Fail(failed);
+  v1::SegmentEvent last = sink.TakeCompleted(payload.digest, pairs, begin);
+  v1::Completed* completed = last.mutable_completed();
+  completed->set_result(kept == nullptr ? v1::CACHE_OUTCOME_MISS
+                                        : v1::CACHE_OUTCOME_HIT);
+  if (kept != nullptr) {
+    SetSpectrumUse(SpectrumUseOf(*kept), completed->mutable_spectrum());
+  }
+  job.Complete(std::move(last));
 }
 
 }  // namespace marrow

@@ -8,7 +8,7 @@
 
 namespace marrow {
 
-// The gRPC shell of segment_job. Thread safe.
+// The gRPC shell of segment_job and cut_job. Thread safe.
 class SegmentationService final
     : public v1::SegmentationService::CallbackService {
  public:
@@ -17,6 +17,9 @@ class SegmentationService final
   grpc::ServerWriteReactor<v1::SegmentEvent>* Segment(
       grpc::CallbackServerContext* call,
       const v1::SegmentRequest* request) override;
+  grpc::ServerWriteReactor<v1::SegmentEvent>* Cut(
+      grpc::CallbackServerContext* call,
+      const v1::CutRequest* request) override;
 
  private:
   ServiceContext& context_;

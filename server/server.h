@@ -27,6 +27,7 @@ struct ServerOptions {
   MeshLimits mesh_limits;
   uint64_t max_inline_mesh_bytes = 1ull << 20;  // at most 1 MiB
   uint64_t cache_bytes = 1ull << 30;            // eigen-pairs
+  uint64_t result_cache_bytes = 1ull << 30;     // what Cut answers from
   // Uploaded payloads; at least mesh_limits.max_bytes.
   uint64_t mesh_store_bytes = 1ull << 30;
   int compute_threads = 0;   // 0: one a core

@@ -52,7 +52,9 @@ ServiceContext::ServiceContext(const ServerOptions& server_options,
       engine(std::move(server_engine)),
       store(options.mesh_store_bytes),
       spectra(engine.solver, options.cache_bytes),
-      pool(ComputeThreads(options), options.max_queued_jobs) {}
+      results(options.result_cache_bytes),
+      pool(ComputeThreads(options), options.max_queued_jobs),
+      quick_pool(1, options.max_queued_jobs) {}
 
 CallRecord::CallRecord(ServiceContext& context,
                        grpc::CallbackServerContext& call, std::string method)

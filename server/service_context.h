@@ -18,6 +18,7 @@
 #include "server/engine.h"
 #include "server/job.h"
 #include "server/mesh_store.h"
+#include "server/result_cache.h"
 #include "server/server.h"
 #include "server/spectrum_cache.h"
 #include "server/ticker.h"
@@ -47,6 +48,7 @@ struct ServiceContext {
   const Engine engine;
   MeshStore store;
   SpectrumCache spectra;
+  ResultCache results;
   JobTable<v1::SegmentEvent> segment_jobs;
   JobTable<v1::SpectrumEvent> spectrum_jobs;
   CallCounter calls;
@@ -55,6 +57,8 @@ struct ServiceContext {
   // The threads go first, since what they run uses all above.
   Ticker ticker;
   ComputePool pool;
+  // For what takes milliseconds and should not wait for a solver.
+  ComputePool quick_pool;
 };
 
 // One call, from its arrival to its end: counted, logged, and given a deadline

@@ -95,6 +95,16 @@ absl::Status MeshMissing(const Digest& sha256) {
   return WithReason(status, kReasonMeshMissing);
 }
 
+absl::Status NotCached(const Digest& sha256) {
+  absl::Status status = absl::NotFoundError(
+      absl::StrCat("no result for the mesh ", sha256.Hex(),
+                   " with these options is kept on this server; call "
+                   "SegmentationService.Segment with the mesh, the options and "
+                   "the cut"));
+  status.SetPayload(kSubjectUrl, absl::Cord(sha256.Hex()));
+  return WithReason(status, kReasonNotCached);
+}
+
 absl::Status Draining() {
   return WithReason(
       absl::UnavailableError("the server is shutting down; call another"),

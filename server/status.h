@@ -12,6 +12,9 @@ namespace marrow {
 // FAILED_PRECONDITION with reason MESH_MISSING.
 absl::Status MeshMissing(const Digest& sha256);
 
+// NOT_FOUND with reason NOT_CACHED.
+absl::Status NotCached(const Digest& sha256);
+
 // UNAVAILABLE with reason DRAINING.
 absl::Status Draining();
 

@@ -23,12 +23,19 @@ struct JobPlan {
   std::string key;  // equal for requests that may share a job
   std::function<void(Job<Event>&)> open;
   std::function<void(Job<Event>&)> run;
+  bool quick = false;  // milliseconds: runs beside the long ones
 };
 
 // A call that joined another's job ran no solver itself and says so.
 template <typename Event>
 void AdaptForJoiner(Event& event) {
-  v1::SpectrumUse* use = event.mutable_completed()->mutable_spectrum();
+  auto* completed = event.mutable_completed();
+  if constexpr (requires { completed->result(); }) {
+    if (completed->result() == v1::CACHE_OUTCOME_MISS) {
+      completed->set_result(v1::CACHE_OUTCOME_JOINED);
+    }
+  }
+  v1::SpectrumUse* use = completed->mutable_spectrum();
   if (use->outcome() != v1::CACHE_OUTCOME_MISS) return;
   use->set_outcome(v1::CACHE_OUTCOME_JOINED);
   use->set_solver_runs(0);
@@ -49,8 +56,9 @@ std::shared_ptr<Job<Event>> NewJob(ServiceContext& context,
 template <typename Event>
 void StartJob(ServiceContext& context, JobTable<Event>& table,
               JobPlan<Event> plan, const std::shared_ptr<Job<Event>>& job) {
-  const absl::Status accepted = context.pool.Submit(
-      job->cancel(), [&table, job, key = plan.key, run = plan.run] {
+  ComputePool& pool = plan.quick ? context.quick_pool : context.pool;
+  const absl::Status accepted =
+      pool.Submit(job->cancel(), [&table, job, key = plan.key, run = plan.run] {
         run(*job);
         table.Remove(key, job.get());
       });

@@ -27,10 +27,15 @@ struct ServiceArguments {
   }
 };
 
+// How the tree is cut.
+struct CutChoice {
+  std::string text = "auto";     // as CheckCutText() allows
+  std::vector<uint32_t> closed;  // ids of nodes
+  std::vector<uint32_t> open;
+};
+
 // An absent parameter has the server's default.
-struct SegmentArguments {
-  std::vector<std::string> files;
-  std::string folder = ".";
+struct MethodArguments {
   v1::Method method = v1::METHOD_UNSPECIFIED;
   std::optional<double> kappa;
   std::optional<double> delta;
@@ -38,6 +43,35 @@ struct SegmentArguments {
   std::optional<double> tolerance;
   std::optional<uint32_t> pairs;
   std::optional<uint32_t> levels;
+
+  v1::SegmentationOptions ToMessage() const {
+    v1::SegmentationOptions options;
+    options.set_method(method);
+    if (kappa) options.set_kappa(*kappa);
+    if (delta) options.set_delta(*delta);
+    if (epsilon) options.set_epsilon(*epsilon);
+    if (tolerance) options.set_tolerance(*tolerance);
+    if (pairs) options.set_eigen_pairs(*pairs);
+    if (levels) options.set_levels(*levels);
+    return options;
+  }
+};
+
+struct SegmentArguments {
+  std::vector<std::string> files;
+  std::string folder = ".";
+  MethodArguments method;
+  CutChoice cut;
+  bool parts = false;
+  bool png = false;
+  ServiceArguments service;
+};
+
+struct CutArguments {
+  std::string file;
+  std::string folder = ".";
+  MethodArguments method;
+  CutChoice cut;
   bool parts = false;
   bool png = false;
   ServiceArguments service;

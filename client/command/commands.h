@@ -10,6 +10,7 @@
 namespace marrow::client {
 
 int RunSegment(const SegmentArguments& arguments);
+int RunCut(const CutArguments& arguments);
 int RunInspect(const InspectArguments& arguments);
 int RunSpectrum(const SpectrumArguments& arguments);
 int RunSample(const SampleArguments& arguments);

@@ -37,6 +37,7 @@ absl::StatusOr<std::unique_ptr<Connection>> Embed(int threads) {
   options.listen.clear();
   options.compute_threads = threads;
   options.reflection = false;
+  options.result_cache_bytes = 0;  // no file is asked for twice
   options.default_deadline = std::chrono::hours(24 * 365);
   MARROW_ASSIGN_OR_RETURN(std::unique_ptr<Server> server,
                           Server::Start(options));

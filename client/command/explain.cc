@@ -11,6 +11,12 @@ namespace {
 
 // options.eigen_pairs -> --pairs; empty for a field that no option sets.
 std::string OptionOf(const std::string& field) {
+  for (const char* list : {"closed", "open"}) {
+    if (field.starts_with(absl::StrCat("cut.", list))) {
+      return absl::StrCat("--", list);
+    }
+  }
+  if (field.starts_with("cut.")) return "--cut";
   const std::string name = field.substr(field.rfind('.') + 1);
   if (name == "eigen_pairs") return "--pairs";
   for (const char* known :
@@ -44,6 +50,10 @@ std::string Explain(const absl::Status& status) {
   if (IsUnreachable(status) && !message.starts_with(kCannotReach)) {
     return absl::StrCat("the server was lost (", message,
                         "): see whether it still runs, and try again");
+  }
+  if (ReasonOf(status) == kReasonNotCached) {
+    return "the server does not have it (any more) with these options: run "
+           "marrow segment with them and with --cut";
   }
   if (absl::IsDeadlineExceeded(status)) {
     return absl::StrCat("not done in time (", message,

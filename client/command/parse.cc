@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/command/arguments.h"
 #include "client/command/commands.h"
+#include "client/command/cut_text.h"
 #include "client/command/exit_code.h"
 
 namespace marrow::client {
@@ -40,24 +41,39 @@ Environment:
 
 constexpr char kSegmentFooter[] =
     R"(For FILE = path/STEM.ext these appear in DIR, all together or not at all:
-  STEM.seg            the automatic cut (level 2, or 1 where there is no 2):
-                      one label a face and line, in the file's face order
-  STEM.level-N.seg    the same for each level; 1 is the coarsest
-  STEM.level-N.ply    the mesh coloured by segment, on faces and vertices
-  STEM.json           the tree, the skeletons, a report on the mesh, timings
-  STEM.level-N.png    with --png: a picture with the skeleton
+  STEM.seg            the cut that --cut asks for: one label a face and line,
+                      in the file's face order
+  STEM.cut.seg        the same again, beside its
+  STEM.level-N.seg    likes for each level; 1 is the coarsest
+  STEM.cut.ply, STEM.level-N.ply
+                      the mesh coloured by segment, on faces and vertices
+  STEM.json           tree, cut, skeletons, a report on the mesh, timings
+  STEM.cut.png, STEM.level-N.png
+                      with --png: a picture with the skeleton
   STEM.parts.obj      with --parts: each segment of the cut an object
-Labels are the ids of the tree's nodes in STEM.json. What an earlier run left
+Labels are the ids of the tree's nodes in STEM.json, and, of segments of the
+cut that are no nodes, those in its "cut". What an earlier run left
 of these for STEM is replaced as a whole.
 
 With --json each event is a line {"event": ..., "file": ...} on standard
-output: accepted, progress, mesh_report, level, skeleton, warning, then
+output: accepted, progress, mesh_report, level, skeleton, warning, cut, then
 completed (with the files that were written) or error; at last one summary.
 A large level or skeleton comes in several lines, whose numbers add up.
 Lines of several files may alternate. A failure is told on standard error too.
 
 Ctrl-C stops the work and leaves no file half written; a second one, or five
 seconds more, ends it at once.)";
+
+constexpr char kCutFooter[] =
+    R"(The server has to have segmented FILE with the same options before, and not to
+have forgotten it since; the answer then takes milliseconds. Without a server
+the file is segmented anew. For FILE = path/STEM.ext these appear in DIR:
+  STEM.cut.seg        one label a face and line, in the file's face order
+  STEM.cut.ply        the mesh coloured by segment, on faces and vertices
+  STEM.cut.json       the segments and the skeleton
+  STEM.cut.png        with --png: a picture with the skeleton
+  STEM.cut.parts.obj  with --parts: each segment an object
+What was there of these is replaced, other results of STEM are left alone.)";
 
 constexpr char kSpectrumFooter[] =
     R"(Prints the eigenvalues of the Laplace-Beltrami operator, ascending, one a line,
@@ -143,7 +159,7 @@ void AddPairs(CLI::App& app, const std::string& names,
 }
 
 // A value's range is the server's business, so that there is one place for it.
-void AddParameters(CLI::App& app, SegmentArguments& arguments) {
+void AddMethod(CLI::App& app, MethodArguments& arguments) {
   const std::map<std::string, v1::Method> methods = {
       {"paper", v1::METHOD_PAPER}, {"merge", v1::METHOD_MERGE}};
   app.add_option("--method", arguments.method,
@@ -173,19 +189,42 @@ void AddParameters(CLI::App& app, SegmentArguments& arguments) {
       ->type_name("N");
 }
 
+void AddCut(CLI::App& app, CutChoice& arguments) {
+  app.add_option("--cut", arguments.text,
+                 "Which segments of the tree to take: auto, level:N, "
+                 "segments:N (at most N) or salience:X, 0 to 1 (auto)")
+      ->check(CheckCutText)
+      ->type_name("CUT");
+  app.add_option("--closed", arguments.closed,
+                 "Ids of nodes that the cut never splits, such as 3,7")
+      ->delimiter(',')
+      ->check(CheckWholeNumber)
+      ->type_name("IDS");
+  app.add_option("--open", arguments.open,
+                 "Ids of nodes that the cut splits into their children")
+      ->delimiter(',')
+      ->check(CheckWholeNumber)
+      ->type_name("IDS");
+}
+
+void AddOutput(CLI::App& app, std::string& folder) {
+  app.add_option("-o,--output", folder,
+                 "Folder of the results, made where it is missing; without "
+                 "it, the current one")
+      ->type_name("DIR");
+}
+
 void AddSegment(CLI::App& root, SegmentArguments& arguments) {
   CLI::App& app = *root.add_subcommand(
       "segment", "Split meshes into parts and write the results");
   app.add_option("FILE", arguments.files, "Mesh files")
       ->required()
       ->type_name("");
-  app.add_option("-o,--output", arguments.folder,
-                 "Folder of the results, made where it is missing; without "
-                 "it, the current one")
-      ->type_name("DIR");
+  AddOutput(app, arguments.folder);
   app.add_flag("--png", arguments.png, "Write a picture a level");
   app.add_flag("--parts", arguments.parts, "Write the parts as OBJ objects");
-  AddParameters(app, arguments);
+  AddMethod(app, arguments.method);
+  AddCut(app, arguments.cut);
   AddService(app, arguments.service);
   AddQuiet(app, arguments.service);
   app.add_option("--threads", arguments.service.threads,
@@ -193,6 +232,22 @@ void AddSegment(CLI::App& root, SegmentArguments& arguments) {
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   app.footer(kSegmentFooter);
+}
+
+void AddCutCommand(CLI::App& root, CutArguments& arguments) {
+  CLI::App& app = *root.add_subcommand(
+      "cut", "Cut the tree of a mesh that a server has segmented, anew");
+  app.add_option("FILE", arguments.file, "Mesh file, as it was segmented")
+      ->required()
+      ->type_name("");
+  AddOutput(app, arguments.folder);
+  app.add_flag("--png", arguments.png, "Write a picture");
+  app.add_flag("--parts", arguments.parts, "Write the parts as OBJ objects");
+  AddMethod(app, arguments.method);
+  AddCut(app, arguments.cut);
+  AddService(app, arguments.service);
+  AddQuiet(app, arguments.service);
+  app.footer(kCutFooter);
 }
 
 void AddInspect(CLI::App& root, InspectArguments& arguments) {
@@ -262,6 +317,7 @@ void AddHealth(CLI::App& root, std::string& server) {
 
 struct Arguments {
   SegmentArguments segment;
+  CutArguments cut;
   InspectArguments inspect;
   SpectrumArguments spectrum;
   SampleArguments sample;
@@ -270,6 +326,7 @@ struct Arguments {
 
 int Run(const CLI::App& app, const Arguments& arguments) {
   if (app.got_subcommand("segment")) return RunSegment(arguments.segment);
+  if (app.got_subcommand("cut")) return RunCut(arguments.cut);
   if (app.got_subcommand("inspect")) return RunInspect(arguments.inspect);
   if (app.got_subcommand("spectrum")) return RunSpectrum(arguments.spectrum);
   if (app.got_subcommand("sample")) return RunSample(arguments.sample);
@@ -300,6 +357,7 @@ int RunCommandLine(int argc, const char* const* argv) {
   app.footer(kFooter);
   app.failure_message(Complaint);
   AddSegment(app, arguments.segment);
+  AddCutCommand(app, arguments.cut);
   AddInspect(app, arguments.inspect);
   AddSpectrum(app, arguments.spectrum);
   AddSample(app, arguments.sample);

@@ -33,6 +33,10 @@ std::optional<json> EventJson(const v1::SegmentEvent& event) {
       return json{{"event", "level"},
                   {"level", event.level().level()},
                   {"segments", event.level().segments_size()}};
+    case v1::SegmentEvent::kCut:
+      return json{{"event", "cut"},
+                  {"salience", event.cut().salience()},
+                  {"segments", event.cut().segments_size()}};
     case v1::SegmentEvent::kSkeleton:
       return json{{"event", "skeleton"},
                   {"level", event.skeleton().level()},

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kLevel[] = ".level-";
+constexpr char kCut[] = ".cut";
 
 // "level-12." at the start of `rest` -> what follows; empty otherwise.
 std::string AfterLevel(const std::string& rest) {
@@ -36,7 +37,8 @@ std::string AfterLevel(const std::string& rest) {
 std::string OwnerOf(const std::string& stem) {
   const fs::path path(stem);
   const std::string extension = path.extension().string();
-  return extension == ".parts" || AfterLevel(extension + ".") == "."
+  return extension == ".parts" || extension == kCut ||
+                 AfterLevel(extension + ".") == "."
              ? path.stem().string()
              : "";
 }
@@ -101,14 +103,14 @@ class Renames {
 };
 
 std::vector<fs::path> OldResults(const std::string& folder,
-                                 const std::string& stem) {
+                                 const std::string& stem, ResultScope scope) {
   std::vector<fs::path> result;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
     const fs::file_status status = it->symlink_status(error);
     if (!error && (fs::is_regular_file(status) || fs::is_symlink(status)) &&
-        IsResultName(stem, it->path().filename().string())) {
+        IsResultName(stem, it->path().filename().string(), scope)) {
       result.push_back(it->path().filename());
     }
   }
@@ -169,22 +171,28 @@ absl::StatusOr<bool> PrepareFolder(const std::string& folder) {
   return is_new;
 }
 
-bool IsResultName(const std::string& stem, const std::string& name) {
+bool IsResultName(const std::string& stem, const std::string& name,
+                  ResultScope scope) {
   if (!name.starts_with(stem)) return false;
   const std::string rest = name.substr(stem.size());
-  if (rest == ".seg" || rest == ".json" || rest == ".parts.obj") return true;
-  const std::string kind = AfterLevel(rest);
-  return kind == ".seg" || kind == ".ply" || kind == ".png";
+  const bool is_cut = rest.starts_with(kCut);
+  if (scope == ResultScope::kCut && !is_cut) return false;
+  const std::string kind =
+      is_cut ? rest.substr(std::strlen(kCut)) : AfterLevel(rest);
+  if (kind == ".seg" || kind == ".ply" || kind == ".png") return true;
+  const std::string whole = is_cut ? kind : rest;
+  return whole == ".seg" || whole == ".json" || whole == ".parts.obj";
 }
 
 absl::Status PublishResults(const std::string& folder, const std::string& stem,
-                            const std::vector<ResultFile>& files) {
+                            const std::vector<ResultFile>& files,
+                            ResultScope scope) {
   MARROW_ASSIGN_OR_RETURN(const StagingFolder staging,
                           StagingFolder::Make(folder));
   MARROW_RETURN_IF_ERROR(WriteAll(staging.path(), folder, files));
   MARROW_ASSIGN_OR_RETURN(const StagingFolder old, StagingFolder::Make(folder));
   Renames renames;
-  for (const fs::path& name : OldResults(folder, stem)) {
+  for (const fs::path& name : OldResults(folder, stem, scope)) {
     const fs::path path = folder / name;
     MARROW_RETURN_IF_ERROR(renames.Do(path, old.path() / name, path));
   }

@@ -26,6 +26,11 @@ struct ResultFile {
   std::string bytes;
 };
 
+enum class ResultScope {
+  kAll,
+  kCut,  // STEM.cut.*: a new cut leaves the others alone
+};
+
 // Replaces the results of `stem` in `folder` by `files`: those of an earlier
 // run that this one does not write again (a deeper level, a picture) go. Until
 // all are written the old ones stand; after an error they still do. Results
@@ -33,10 +38,13 @@ struct ResultFile {
 //
 // Errors: those of WriteFileAtomically.
 absl::Status PublishResults(const std::string& folder, const std::string& stem,
-                            const std::vector<ResultFile>& files);
+                            const std::vector<ResultFile>& files,
+                            ResultScope scope = ResultScope::kAll);
 
-// STEM.seg, STEM.json, STEM.parts.obj, STEM.level-N.{seg,ply,png}.
-bool IsResultName(const std::string& stem, const std::string& name);
+// STEM.seg, STEM.json, STEM.parts.obj, STEM.level-N.{seg,ply,png},
+// STEM.cut.{seg,ply,png,json,parts.obj}.
+bool IsResultName(const std::string& stem, const std::string& name,
+                  ResultScope scope = ResultScope::kAll);
 
 }  // namespace marrow::client
 

@@ -14,10 +14,10 @@
 namespace marrow::client {
 namespace {
 
-absl::Status AddLevelFiles(const std::string& stem, const PolygonMesh& mesh,
+// `name` is the files' without its last extension.
+absl::Status AddLevelFiles(const std::string& name, const PolygonMesh& mesh,
                            const Level& level, bool png,
                            std::vector<ResultFile>& files) {
-  const std::string name = absl::StrCat(stem, ".level-", level.level);
   files.push_back({name + ".seg", SegFile(level.face_labels)});
   MARROW_ASSIGN_OR_RETURN(std::string ply, PlyFile(mesh, level.face_labels));
   files.push_back({name + ".ply", std::move(ply)});
@@ -28,38 +28,89 @@ absl::Status AddLevelFiles(const std::string& stem, const PolygonMesh& mesh,
   return absl::OkStatus();
 }
 
+absl::Status ReorderLevel(const OrderMap& order, Level& level) {
+  MARROW_ASSIGN_OR_RETURN(level.face_labels,
+                          order.FaceLabelsInFileOrder(level.face_labels));
+  MARROW_ASSIGN_OR_RETURN(level.vertex_labels,
+                          order.VertexLabelsInFileOrder(level.vertex_labels));
+  return absl::OkStatus();
+}
+
+absl::Status ReorderNodes(const OrderMap& order,
+                          std::vector<SegmentNode>& nodes) {
+  for (SegmentNode& node : nodes) {
+    MARROW_ASSIGN_OR_RETURN(node.medial_structure,
+                            order.FileVertices(node.medial_structure));
+  }
+  return absl::OkStatus();
+}
+
+CutNote NoteOf(const CutChoice& cut) {
+  return {cut.text, cut.closed, cut.open};
+}
+
+size_t NumSegments(const Level& level) {
+  return std::set<uint32_t>(level.face_labels.begin(), level.face_labels.end())
+      .size();
+}
+
 }  // namespace
 
 absl::StatusOr<Segmentation> InFileOrder(Segmentation answer,
                                          const OrderMap& order) {
   for (Level& level : answer.levels) {
-    MARROW_ASSIGN_OR_RETURN(level.face_labels,
-                            order.FaceLabelsInFileOrder(level.face_labels));
-    MARROW_ASSIGN_OR_RETURN(level.vertex_labels,
-                            order.VertexLabelsInFileOrder(level.vertex_labels));
+    MARROW_RETURN_IF_ERROR(ReorderLevel(order, level));
   }
-  for (SegmentNode& node : answer.nodes) {
-    MARROW_ASSIGN_OR_RETURN(node.medial_structure,
-                            order.FileVertices(node.medial_structure));
+  MARROW_RETURN_IF_ERROR(ReorderNodes(order, answer.nodes));
+  if (answer.cut.has_value()) {
+    MARROW_RETURN_IF_ERROR(PutInFileOrder(order, *answer.cut));
   }
   return answer;
 }
 
+absl::Status PutInFileOrder(const OrderMap& order, Cut& cut) {
+  MARROW_RETURN_IF_ERROR(ReorderLevel(order, cut.level));
+  return ReorderNodes(order, cut.segments);
+}
+
 absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
     const std::string& name, const PolygonMesh& mesh,
-    const Segmentation& segmentation, const ResultOptions& options) {
+    const Segmentation& segmentation, const ResultOptions& options,
+    const CutChoice& cut) {
   const std::string stem = StemOf(name);
-  const Level& cut = segmentation.AutomaticCut();
+  const std::vector<uint32_t>& labels = segmentation.CutLevel().face_labels;
   std::vector<ResultFile> files;
-  files.push_back({stem + ".seg", SegFile(cut.face_labels)});
-  files.push_back({stem + ".json", JsonFile(name, mesh, segmentation)});
+  files.push_back({stem + ".seg", SegFile(labels)});
+  files.push_back(
+      {stem + ".json", JsonFile(name, mesh, segmentation, NoteOf(cut))});
+  if (segmentation.cut.has_value()) {
+    MARROW_RETURN_IF_ERROR(AddLevelFiles(
+        stem + ".cut", mesh, segmentation.cut->level, options.png, files));
+  }
   for (const Level& level : segmentation.levels) {
     MARROW_RETURN_IF_ERROR(
-        AddLevelFiles(stem, mesh, level, options.png, files));
+        AddLevelFiles(absl::StrCat(stem, ".level-", level.level), mesh, level,
+                      options.png, files));
   }
   if (options.parts) {
+    MARROW_ASSIGN_OR_RETURN(std::string obj, PartsObjFile(mesh, labels));
+    files.push_back({stem + ".parts.obj", std::move(obj)});
+  }
+  return files;
+}
+
+absl::StatusOr<std::vector<ResultFile>> MakeCutFiles(
+    const std::string& name, const PolygonMesh& mesh, const CutAnswer& answer,
+    const ResultOptions& options, const CutChoice& cut) {
+  const std::string stem = StemOf(name) + ".cut";
+  std::vector<ResultFile> files;
+  MARROW_RETURN_IF_ERROR(
+      AddLevelFiles(stem, mesh, answer.cut.level, options.png, files));
+  files.push_back(
+      {stem + ".json", CutJsonFile(name, mesh, answer, NoteOf(cut))});
+  if (options.parts) {
     MARROW_ASSIGN_OR_RETURN(std::string obj,
-                            PartsObjFile(mesh, cut.face_labels));
+                            PartsObjFile(mesh, answer.cut.level.face_labels));
     files.push_back({stem + ".parts.obj", std::move(obj)});
   }
   return files;
@@ -68,12 +119,14 @@ absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
 std::string CountSegments(const Segmentation& segmentation) {
   std::string text;
   for (const Level& level : segmentation.levels) {
-    const size_t count =
-        std::set<uint32_t>(level.face_labels.begin(), level.face_labels.end())
-            .size();
+    const size_t count = NumSegments(level);
     absl::StrAppend(&text, text.empty() ? "" : ", ", count,
                     text.empty() ? (count == 1 ? " segment" : " segments") : "",
                     " at level ", level.level);
+  }
+  if (segmentation.cut.has_value()) {
+    absl::StrAppend(&text, ", ", NumSegments(segmentation.cut->level),
+                    " in the cut");
   }
   return text;
 }

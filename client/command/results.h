@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/command/arguments.h"
 #include "client/command/result_folder.h"
 #include "client/encoder/order_map.h"
 #include "client/polygon_mesh.h"
@@ -18,17 +19,26 @@ namespace marrow::client {
 absl::StatusOr<Segmentation> InFileOrder(Segmentation answer,
                                          const OrderMap& order);
 
+absl::Status PutInFileOrder(const OrderMap& order, Cut& cut);
+
 struct ResultOptions {
   bool parts = false;  // STEM.parts.obj
-  bool png = false;    // STEM.level-N.png
+  bool png = false;    // STEM.cut.png, STEM.level-N.png
 };
 
-// All files of one input, in memory. `name` is what the JSON calls the mesh.
+// All files of one input, in memory. `name` is what the JSON calls the mesh,
+// and `cut` what was asked for.
 absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
     const std::string& name, const PolygonMesh& mesh,
-    const Segmentation& segmentation, const ResultOptions& options);
+    const Segmentation& segmentation, const ResultOptions& options,
+    const CutChoice& cut);
 
-// "6 segments at level 1, 21 at level 2".
+// The same of a cut alone: STEM.cut.*.
+absl::StatusOr<std::vector<ResultFile>> MakeCutFiles(
+    const std::string& name, const PolygonMesh& mesh, const CutAnswer& answer,
+    const ResultOptions& options, const CutChoice& cut);
+
+// "6 segments at level 1, 21 at level 2, 14 in the cut".
 std::string CountSegments(const Segmentation& segmentation);
 
 }  // namespace marrow::client

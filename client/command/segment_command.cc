@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/command/commands.h"
+#include "client/command/cut_text.h"
 #include "client/command/exit_code.h"
 #include "client/command/explain.h"
 #include "client/command/reporter.h"
@@ -23,16 +24,11 @@ namespace {
 // A file in flight is held in memory as mesh, payload and answer.
 constexpr uint32_t kMaxInFlight = 16;
 
-v1::SegmentationOptions ToMessage(const SegmentArguments& arguments) {
-  v1::SegmentationOptions options;
-  options.set_method(arguments.method);
-  if (arguments.kappa) options.set_kappa(*arguments.kappa);
-  if (arguments.delta) options.set_delta(*arguments.delta);
-  if (arguments.epsilon) options.set_epsilon(*arguments.epsilon);
-  if (arguments.tolerance) options.set_tolerance(*arguments.tolerance);
-  if (arguments.pairs) options.set_eigen_pairs(*arguments.pairs);
-  if (arguments.levels) options.set_levels(*arguments.levels);
-  return options;
+v1::SegmentRequest ToRequest(const SegmentArguments& arguments) {
+  v1::SegmentRequest request;
+  *request.mutable_options() = arguments.method.ToMessage();
+  *request.mutable_cut() = ToMessage(arguments.cut);
+  return request;
 }
 
 std::string SpectrumNote(const nlohmann::json& cache) {
@@ -96,7 +92,7 @@ class SegmentRun {
                             LoadInput(path, arguments_.service.quantize));
     MARROW_ASSIGN_OR_RETURN(
         Segmentation answer,
-        call_.client().Segment(input.payload, ToMessage(arguments_),
+        call_.client().Segment(input.payload, ToRequest(arguments_),
                                arguments_.service.Timeout(),
                                [&](const v1::SegmentEvent& event) {
                                  reporter_.Event(file, event);
@@ -117,7 +113,8 @@ class SegmentRun {
       const Segmentation& segmentation) const {
     const std::string name = path.substr(path.rfind('/') + 1);
     return MakeResultFiles(name, mesh, segmentation,
-                           {.parts = arguments_.parts, .png = arguments_.png});
+                           {.parts = arguments_.parts, .png = arguments_.png},
+                           arguments_.cut);
   }
 
   void Tell(size_t file, const Segmentation& segmentation,

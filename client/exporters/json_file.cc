@@ -29,6 +29,12 @@ Json NodeJson(const SegmentNode& node) {
           {"stop_reason", node.stop_reason}};
 }
 
+std::map<uint32_t, uint64_t> CountFaces(const Level& level) {
+  std::map<uint32_t, uint64_t> counts;
+  for (uint32_t label : level.face_labels) ++counts[label];
+  return counts;
+}
+
 Json SkeletonJson(const Level& level) {
   Json joints = Json::array();
   Json bones = Json::array();
@@ -46,13 +52,32 @@ Json SkeletonJson(const Level& level) {
 }
 
 Json LevelJson(const Level& level) {
-  std::map<uint32_t, uint64_t> face_counts;
-  for (uint32_t label : level.face_labels) ++face_counts[label];
   Json segments = Json::array();
-  for (const auto& [id, faces] : face_counts) {
+  for (const auto& [id, faces] : CountFaces(level)) {
     segments.push_back({{"id", id}, {"faces", faces}});
   }
   return {{"level", level.level}, {"segments", segments}};
+}
+
+Json CutJson(const client::Cut& cut, const CutNote& asked) {
+  std::map<uint32_t, uint64_t> face_counts = CountFaces(cut.level);
+  Json segments = Json::array();
+  for (const SegmentNode& segment : cut.segments) {
+    segments.push_back({{"id", segment.id},
+                        {"faces", face_counts[segment.id]},
+                        {"parent", IdOrNull(segment.parent)},
+                        {"level", segment.level},
+                        {"area", segment.area},
+                        {"centroid", segment.centroid},
+                        {"medial_structure", segment.medial_structure},
+                        {"salience", segment.salience}});
+  }
+  Json skeleton = SkeletonJson(cut.level);
+  skeleton.erase("level");
+  return {{"spec", asked.text},       {"closed", asked.closed},
+          {"open", asked.open},       {"number", cut.segments.size()},
+          {"salience", cut.salience}, {"segments", segments},
+          {"skeleton", skeleton}};
 }
 
 std::string Compact(const Json& value) {
@@ -79,10 +104,24 @@ void Write(const Json& value, int depth, const std::string& indent,
   out += "\n" + indent + (value.is_object() ? "}" : "]");
 }
 
+std::string Format(const Json& root) {
+  constexpr int kNesting = 4;
+  std::string text;
+  Write(root, kNesting, "", text);
+  return text + "\n";
+}
+
+Json MeshJson(std::string_view name, const PolygonMesh& mesh) {
+  return {{"name", name},
+          {"vertices", mesh.NumVertices()},
+          {"faces", mesh.NumFaces()}};
+}
+
 }  // namespace
 
 std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
-                     const client::Segmentation& segmentation) {
+                     const client::Segmentation& segmentation,
+                     const CutNote& asked) {
   Json nodes = Json::array();
   for (const SegmentNode& node : segmentation.nodes) {
     nodes.push_back(NodeJson(node));
@@ -95,21 +134,26 @@ std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
   }
   const Json root = {
       {"schema", kJsonSchema},
-      {"mesh",
-       {{"name", mesh_name},
-        {"vertices", mesh.NumVertices()},
-        {"faces", mesh.NumFaces()}}},
+      {"mesh", MeshJson(mesh_name, mesh)},
       {"tree", {{"nodes", nodes}}},
-      {"automatic_cut", {{"level", segmentation.AutomaticCut().level}}},
+      {"automatic_cut", {{"level", segmentation.AutomaticLevel().level}}},
+      {"cut", segmentation.cut.has_value() ? CutJson(*segmentation.cut, asked)
+                                           : Json(nullptr)},
       {"levels", levels},
       {"skeletons", skeletons},
       {"report", segmentation.report},
       {"timings", segmentation.timings},
       {"cache", segmentation.cache}};
-  constexpr int kNesting = 4;
-  std::string text;
-  Write(root, kNesting, "", text);
-  return text + "\n";
+  return Format(root);
+}
+
+std::string CutJsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
+                        const client::CutAnswer& answer, const CutNote& asked) {
+  return Format({{"schema", kCutJsonSchema},
+                 {"mesh", MeshJson(mesh_name, mesh)},
+                 {"cut", CutJson(answer.cut, asked)},
+                 {"timings", answer.timings},
+                 {"cache", answer.cache}});
 }
 
 }  // namespace marrow

@@ -17,6 +17,7 @@ inline constexpr char kReasonMeshRejected[] = "MESH_REJECTED";
 inline constexpr char kReasonInvalidParameter[] = "INVALID_PARAMETER";
 inline constexpr char kReasonSolverNotConverged[] = "SOLVER_NOT_CONVERGED";
 inline constexpr char kReasonMeshMissing[] = "MESH_MISSING";
+inline constexpr char kReasonNotCached[] = "NOT_CACHED";
 inline constexpr char kReasonDigestMismatch[] = "DIGEST_MISMATCH";
 inline constexpr char kReasonOverloaded[] = "OVERLOADED";
 inline constexpr char kReasonDraining[] = "DRAINING";

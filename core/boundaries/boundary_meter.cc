@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <queue>
 #include <tuple>
 
 #include "core/boundaries/calibration.h"
+#include "core/boundaries/loops.h"
 
 namespace marrow {
 namespace {
@@ -42,9 +41,7 @@ BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
       face_areas_(face_areas),
       curvature_(curvature),
       unit_(UnitAreaPositions(mesh)),
-      vertex_stamp_(mesh.NumVertices(), 0),
-      face_stamp_(mesh.NumFaces(), 0),
-      distance_(mesh.NumVertices(), 0) {}
+      flood_(mesh, adjacency, unit_) {}
 
 Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
                                         const PieceGraph::Pair& groups) {
@@ -76,6 +73,11 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   std::tie(measures[kCurvatureWide], measures[kSaddleWide]) =
       CurvatureAlong(cut, kWideWidth * cut.radius);
   MeasureStrips(cut, measures);
+  const LoopShape shape = ShapeOfLoops(
+      mesh_, adjacency_, unit_, cut.edges,
+      [&](uint32_t f) { return graph.group_of_face()[f] == cut.groups[0]; });
+  measures[kRoundness] = shape.roundness;
+  measures[kLargestLoop] = shape.largest;
   return measures;
 }
 
@@ -98,14 +100,15 @@ std::pair<double, double> BoundaryMeter::CurvatureAlong(const Cut& cut,
 }
 
 void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
-  Flood(cut, kWideStrip * cut.radius);
+  const std::vector<uint32_t>& group = cut.graph.group_of_face();
+  flood_.Run(cut.edges, kWideStrip * cut.radius, [&](uint32_t f) {
+    return group[f] == cut.groups[0] || group[f] == cut.groups[1];
+  });
   const double breadths[] = {kNearStrip * cut.radius, kWideStrip * cut.radius};
   double areas[2][2] = {};  // breadth, side
-  for (uint32_t f : reached_) {
-    double distance = 0;
-    for (uint32_t v : mesh_.faces[f])
-      distance += (vertex_stamp_[v] == flood_ ? distance_[v] : breadths[1]) / 3;
-    const bool side = cut.graph.group_of_face()[f] == cut.groups[1];
+  for (uint32_t f : flood_.faces()) {
+    const double distance = flood_.DistanceOf(f);
+    const bool side = group[f] == cut.groups[1];
     for (int i = 0; i < 2; ++i)
       if (distance < breadths[i]) areas[i][side] += face_areas_[f];
   }
@@ -117,34 +120,6 @@ void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
   measures[kNearStripOfLarger] = growth(0, 1);
   measures[kWideStripOfSmaller] = growth(1, 0);
   measures[kWideStripOfLarger] = growth(1, 1);
-}
-
-void BoundaryMeter::Flood(const Cut& cut, double limit) {
-  ++flood_;
-  reached_.clear();
-  using Entry = std::pair<double, uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> heap;
-  auto reach = [&](uint32_t v, double distance) {
-    if (vertex_stamp_[v] == flood_ && distance_[v] <= distance) return;
-    vertex_stamp_[v] = flood_;
-    distance_[v] = distance;
-    if (distance < limit) heap.push({distance, v});
-  };
-  for (uint32_t e : cut.edges)
-    for (uint32_t v : adjacency_.EdgeVertices(e)) reach(v, 0);
-  while (!heap.empty()) {
-    const auto [distance, v] = heap.top();
-    heap.pop();
-    if (distance > distance_[v]) continue;
-    for (uint32_t f : adjacency_.VertexFaces(v)) {
-      const uint32_t group = cut.graph.group_of_face()[f];
-      if (group != cut.groups[0] && group != cut.groups[1]) continue;
-      if (face_stamp_[f] != flood_) reached_.push_back(f);
-      face_stamp_[f] = flood_;
-      for (uint32_t u : mesh_.faces[f])
-        if (u != v) reach(u, distance + EdgeLength(u, v));
-    }
-  }
 }
 
 }  // namespace marrow

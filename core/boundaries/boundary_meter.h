@@ -1,8 +1,8 @@
 // How strong a boundary is: whether people would see two parts there.
 //
-// A cut between parts runs where the surface is saddle-shaped, and the surface
-// widens beside it. Both are seen from inside the surface, so a strength does
-// not change when a joint bends.
+// A cut between parts runs in a loop where the surface is saddle-shaped, and
+// the surface widens beside it. All but the roundness of the loop is seen from
+// inside the surface, so a strength hardly changes when a joint bends.
 #ifndef MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 #define MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/boundaries/curvature.h"
+#include "core/boundaries/flood.h"
 #include "core/boundaries/piece_graph.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
@@ -37,6 +38,8 @@ enum Measure : uint32_t {
   kNearStripOfLarger,
   kWideStripOfSmaller,  // breadth 2 r
   kWideStripOfLarger,
+  kRoundness,    // of the loops that the cut is made of (loops.h): low for a
+  kLargestLoop,  // cut along a limb, high for one around it
   kNumMeasures
 };
 using Measures = std::array<double, kNumMeasures>;
@@ -73,21 +76,12 @@ class BoundaryMeter {
   // Mean and share of kCurvature* and kSaddle* at a width.
   std::pair<double, double> CurvatureAlong(const Cut& cut, double width) const;
   void MeasureStrips(const Cut& cut, Measures& measures);
-  // Fills distance_ up to `limit` from the cut, within its groups, and
-  // reached_ with the faces that were met.
-  void Flood(const Cut& cut, double limit);
-
   const TriangleMesh& mesh_;
   const Adjacency& adjacency_;
   const std::vector<double>& face_areas_;
   const Curvature& curvature_;
   Positions unit_;
-
-  // Of the last flood; an entry counts where its stamp is flood_.
-  uint32_t flood_ = 0;
-  std::vector<uint32_t> vertex_stamp_, face_stamp_;
-  std::vector<double> distance_;
-  std::vector<uint32_t> reached_;
+  Flood flood_;
 };
 
 }  // namespace marrow

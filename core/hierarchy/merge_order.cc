@@ -1,6 +1,7 @@
 #include "core/hierarchy/merge_order.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -32,32 +33,32 @@ void Update(const PieceGraph& graph, const PieceGraph::Pair& merged,
       strengths[pair] = Strength(meter.MeasureBoundary(graph, pair));
 }
 
-std::vector<uint32_t> CutAfter(const MergeOrder& order, size_t num_merges) {
-  DisjointSets groups(order.num_pieces);
-  for (size_t i = 0; i < num_merges; ++i)
-    groups.Union(order.merges[i].a, order.merges[i].b);
-  std::vector<uint32_t> cut(order.num_pieces);
+}  // namespace
+
+std::vector<uint32_t> MergeOrder::CutAt(double threshold) const {
+  DisjointSets groups(num_pieces);
+  for (const PieceMerge& merge : merges) {
+    if (merge.salience >= threshold) break;
+    groups.Union(merge.a, merge.b);
+  }
+  std::vector<uint32_t> cut(num_pieces);
   for (uint32_t p = 0; p < cut.size(); ++p) cut[p] = groups.Find(p);
   return cut;
 }
 
-}  // namespace
-
-std::vector<uint32_t> MergeOrder::CutAt(double threshold) const {
-  const auto end = std::partition_point(
-      merges.begin(), merges.end(),
-      [&](const PieceMerge& merge) { return merge.salience < threshold; });
-  return CutAfter(*this, end - merges.begin());
+std::vector<uint32_t> MergeOrder::CutInto(uint32_t count) const {
+  return CutAt(ThresholdInto(count));
 }
 
-std::vector<uint32_t> MergeOrder::CutInto(uint32_t count) const {
+double MergeOrder::ThresholdInto(uint32_t count) const {
   size_t made = num_pieces > count ? num_pieces - count : 0;
   made = std::min(made, merges.size());
   // Merges of one salience are made together.
   while (made > 0 && made < merges.size() &&
          merges[made].salience == merges[made - 1].salience)
     ++made;
-  return CutAfter(*this, made);
+  return made < merges.size() ? merges[made].salience
+                              : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> MergeOrder::InnerSalience(

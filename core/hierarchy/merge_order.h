@@ -38,6 +38,9 @@ struct MergeOrder {
   // The finest cut of a threshold that has at most `count` groups; the coarsest
   // where there is none. REQUIRES: count > 0.
   std::vector<uint32_t> CutInto(uint32_t count) const;
+  // Its threshold: the least salience of a merge that it does not make,
+  // infinity where it makes all.
+  double ThresholdInto(uint32_t count) const;
   // Least piece -> salience of the last merge within the group of the cut; 0
   // for a group of one piece.
   std::vector<double> InnerSalience(const std::vector<uint32_t>& cut) const;

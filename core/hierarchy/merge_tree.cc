@@ -6,6 +6,7 @@
 
 #include "core/base/status_macros.h"
 #include "core/boundaries/boundary_meter.h"
+#include "core/boundaries/boundary_mover.h"
 #include "core/boundaries/calibration.h"
 #include "core/boundaries/curvature.h"
 #include "core/boundaries/piece_graph.h"
@@ -54,6 +55,9 @@ absl::StatusOr<MergeTree> BuildMergeTree(
   MARROW_ASSIGN_OR_RETURN(
       const Curvature curvature,
       Curvature::Measure(context.mesh, context.adjacency, cancel));
+  MARROW_RETURN_IF_ERROR(
+      MoveBoundaries(context.mesh, context.adjacency, context.face_areas,
+                     context.links, curvature, cancel, result.piece_of_face));
   BoundaryMeter meter(context.mesh, context.adjacency, context.face_areas,
                       curvature);
   MARROW_ASSIGN_OR_RETURN(

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
@@ -31,6 +32,8 @@ class TreeBuilder {
 
   uint32_t depth() const { return depth_; }
   const SegmentTree& tree() const { return tree_; }
+  // Nothing else may be called after it.
+  SegmentTree TakeTree() { return std::move(tree_); }
 
  private:
   void AddChildren(uint32_t parent, RegionSplit split);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "core/pieces/fronts.h"
 #include "core/pieces/medial_structure.h"
 #include "core/pieces/region.h"
+#include "core/pieces/stray_pieces.h"
 
 namespace marrow {
 namespace {
@@ -105,99 +105,6 @@ Relaxation Relax(const Region& region, const DiffusionMap& Phi,
   return result;
 }
 
-// Connected pieces of faces with one label: piece of each face, and its label.
-struct LabelPieces {
-  std::vector<uint32_t> piece;
-  std::vector<uint32_t> label;
-  std::vector<double> area;
-};
-
-LabelPieces FindLabelPieces(const Region& region,
-                            const std::vector<uint32_t>& labels) {
-  LabelPieces result;
-  result.piece = ConnectedPieces(region.adjacency(), labels, region.links());
-  for (uint32_t f = 0; f < labels.size(); ++f) {
-    if (result.piece[f] == result.label.size()) {
-      result.label.push_back(labels[f]);
-      result.area.push_back(0);
-    }
-    result.area[result.piece[f]] += region.areas()[f];
-  }
-  return result;
-}
-
-// For each piece, the label with which it shares the longest boundary, counted
-// in edges and links; its own where it touches no other. Only pieces that are
-// the largest of their label count as neighbours, so that every move ends in
-// one.
-class LongestNeighbour {
- public:
-  LongestNeighbour(const LabelPieces& pieces, const std::vector<bool>& is_main)
-      : pieces_(pieces), is_main_(is_main) {}
-
-  // The faces of one edge or link. Strays and main pieces are told apart
-  // first: where a thousand pages meet, there are few main pieces.
-  void Meet(std::span<const uint32_t> faces) {
-    strays_.clear();
-    mains_.clear();
-    for (uint32_t f : faces) {
-      const uint32_t piece = pieces_.piece[f];
-      (is_main_[piece] ? mains_ : strays_).push_back(piece);
-    }
-    if (strays_.empty() || mains_.empty()) return;
-    for (std::vector<uint32_t>* list : {&strays_, &mains_}) {
-      std::sort(list->begin(), list->end());
-      list->erase(std::unique(list->begin(), list->end()), list->end());
-    }
-    for (uint32_t stray : strays_)
-      for (uint32_t main : mains_) ++shared_[{stray, pieces_.label[main]}];
-  }
-
-  std::vector<uint32_t> Labels() const {
-    std::vector<uint32_t> result = pieces_.label, longest(result.size(), 0);
-    for (const auto& [key, count] : shared_)
-      if (count > longest[key.first]) {
-        longest[key.first] = count;
-        result[key.first] = key.second;
-      }
-    return result;
-  }
-
- private:
-  const LabelPieces& pieces_;
-  const std::vector<bool>& is_main_;
-  std::vector<uint32_t> strays_, mains_;
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> shared_;
-};
-
-// Leaves every segment in one piece where the region is in one.
-void JoinStrayPieces(const Region& region, size_t num_labels,
-                     std::vector<uint32_t>& labels) {
-  // A stray that touches only strays is reached once they have moved.
-  for (int round = 0; round < 8; ++round) {
-    const LabelPieces pieces = FindLabelPieces(region, labels);
-    std::vector<uint32_t> main(num_labels, kNoIndex);
-    for (uint32_t p = 0; p < pieces.label.size(); ++p) {
-      uint32_t& best = main[pieces.label[p]];
-      if (best == kNoIndex || pieces.area[p] > pieces.area[best]) best = p;
-    }
-    std::vector<bool> is_main(pieces.label.size(), false);
-    for (uint32_t p : main)
-      if (p != kNoIndex) is_main[p] = true;
-    LongestNeighbour neighbours(pieces, is_main);
-    for (uint32_t e = 0; e < region.adjacency().NumEdges(); ++e)
-      neighbours.Meet(region.adjacency().EdgeFaces(e));
-    for (const auto& link : region.links()) neighbours.Meet(link);
-    const std::vector<uint32_t> target = neighbours.Labels();
-    bool moved = false;
-    for (uint32_t f = 0; f < labels.size(); ++f) {
-      moved |= labels[f] != target[pieces.piece[f]];
-      labels[f] = target[pieces.piece[f]];
-    }
-    if (!moved) return;
-  }
-}
-
 // In mesh faces and vertices, without the empty ones.
 std::vector<Piece> MakePieces(const Region& region, const DiffusionMap& Phi,
                               const std::vector<uint32_t>& labels,
@@ -246,7 +153,8 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   Relaxation relaxed =
       Relax(region, Phi, std::move(structures), options, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  JoinStrayPieces(region, num_labels, relaxed.labels);
+  JoinStrayPieces(region.adjacency(), region.areas(), region.links(),
+                  num_labels, relaxed.labels);
 
   RegionSplit split;
   split.iterations = relaxed.iterations;

@@ -5,45 +5,10 @@
 
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
+#include "core/pipeline/labels.h"
 #include "core/skeleton/skeleton.h"
 
 namespace marrow {
-namespace {
-
-// Point -> node id by the area around its vertex.
-std::vector<uint32_t> PointLabels(const CanonicalMesh& canonical,
-                                  const Adjacency& adjacency,
-                                  const std::vector<double>& areas,
-                                  const std::vector<uint32_t>& face_segment) {
-  const uint32_t n = canonical.mesh.NumVertices();
-  std::vector<uint32_t> of_vertex(n);
-  std::vector<std::pair<uint32_t, double>> around;
-  for (uint32_t v = 0; v < n; ++v) {
-    around.clear();
-    for (uint32_t f : adjacency.VertexFaces(v))
-      around.push_back({face_segment[f], areas[f]});
-    std::sort(around.begin(), around.end());
-    double most = -1;
-    for (size_t i = 0; i < around.size();) {
-      double sum = 0;
-      const uint32_t segment = around[i].first;
-      for (; i < around.size() && around[i].first == segment; ++i)
-        sum += around[i].second;
-      if (sum > most) {
-        most = sum;
-        of_vertex[v] = segment;
-      }
-    }
-  }
-  std::vector<uint32_t> labels(canonical.point_map.size(), kNoIndex);
-  for (size_t p = 0; p < labels.size(); ++p)
-    if (canonical.point_map[p] != kNoIndex)
-      labels[p] = of_vertex[canonical.point_map[p]];
-  return labels;
-}
-
-}  // namespace
-
 absl::Status Reporter::Took(bool go_on) {
   if (!go_on) return absl::CancelledError("nobody listens any more");
   return cancel_.Check();
@@ -87,26 +52,26 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
                          body.bridges)} {}
 
-absl::Status EmitLevel(const Job& job, const SegmentTree& tree,
+absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,
                        uint32_t level) {
-  const Prepared& prepared = job.prepared;
+  const Prepared& prepared = to.prepared;
   const std::vector<uint32_t> face_segment = tree.FaceSegments(level);
-  std::vector<uint32_t> face_labels;
-  face_labels.reserve(prepared.canonical.face_map.size());
-  for (uint32_t f : prepared.canonical.face_map)
-    face_labels.push_back(face_segment[f]);
-  const std::vector<uint32_t> point_labels = PointLabels(
+  const std::vector<uint32_t> face_labels =
+      LabelFaces(prepared.canonical, face_segment);
+  const std::vector<uint32_t> point_labels = LabelPoints(
       prepared.canonical, prepared.adjacency, prepared.areas, face_segment);
   const Skeleton skeleton =
       BuildSkeleton(prepared.canonical.mesh, prepared.adjacency, tree, level,
                     prepared.bridges);
-  return job.reporter.Took(
-      job.sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
+  return to.reporter.Took(
+      to.sink.OnLevel({level, tree, face_labels, point_labels, skeleton}));
 }
 
-absl::Status EmitTree(const Job& job, const SegmentTree& tree) {
-  MARROW_RETURN_IF_ERROR(job.reporter.Progress(Stage::kSegments, 1));
-  return job.reporter.Took(job.sink.OnTree(tree));
+absl::Status EmitTree(const Telling& to,
+                      std::shared_ptr<const SegmentedMesh> whole) {
+  MARROW_RETURN_IF_ERROR(to.reporter.Progress(Stage::kSegments, 1));
+  MARROW_RETURN_IF_ERROR(to.reporter.Took(to.sink.OnTree(whole->tree())));
+  return to.reporter.Took(to.sink.OnSegmentedMesh(std::move(whole)));
 }
 
 }  // namespace marrow

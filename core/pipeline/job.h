@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -16,6 +17,7 @@
 #include "core/pieces/split_region.h"
 #include "core/pipeline/options.h"
 #include "core/pipeline/pipeline.h"
+#include "core/pipeline/segmented_mesh.h"
 #include "core/spectrum/eigen_pairs.h"
 
 namespace marrow {
@@ -74,20 +76,45 @@ class PreparedBody {
   const SplitContext context_;
 };
 
+// A mesh and all that segmenting it takes. Its parts refer to each other, so it
+// stays where it is made; immutable once all of them are there.
+struct Workspace {
+  Workspace() = default;
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  CanonicalMesh canonical;
+  Bodies bodies;
+  std::optional<Prepared> prepared;
+  std::vector<std::unique_ptr<PreparedBody>> prepared_bodies;
+};
+
+// What is told, and whom.
+struct Telling {
+  const Prepared& prepared;
+  Reporter& reporter;
+  Sink& sink;
+};
+
 // What a method reads and whom it tells.
 struct Job {
+  std::shared_ptr<const Workspace> workspace;
   const Prepared& prepared;
   const std::vector<std::unique_ptr<PreparedBody>>& bodies;
   const SegmentationOptions& options;
   const CancelToken& cancel;
   Reporter& reporter;
   Sink& sink;
+
+  operator Telling() const { return {prepared, reporter, sink}; }
 };
 
 // Labels and skeleton of a level, to the sink.
-absl::Status EmitLevel(const Job& job, const SegmentTree& tree, uint32_t level);
-// The whole tree, to the sink.
-absl::Status EmitTree(const Job& job, const SegmentTree& tree);
+absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,
+                       uint32_t level);
+// The whole tree, and the mesh to cut it again, to the sink.
+absl::Status EmitTree(const Telling& to,
+                      std::shared_ptr<const SegmentedMesh> whole);
 
 }  // namespace marrow
 

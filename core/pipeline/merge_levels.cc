@@ -1,18 +1,23 @@
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "core/base/status_macros.h"
+#include "core/boundaries/calibration.h"
 #include "core/hierarchy/forest.h"
 #include "core/hierarchy/merge_tree.h"
+#include "core/hierarchy/merged_pieces.h"
 #include "core/pipeline/methods.h"
 
 namespace marrow {
 namespace {
 
 // The tree of every body, in their order.
-absl::StatusOr<std::vector<SegmentTree>> BodyTrees(const Job& job) {
-  std::vector<SegmentTree> trees;
+absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
+  std::vector<MergeTree> trees;
   double before = 0;
   for (const auto& body : job.bodies) {
     absl::Status reported;
@@ -26,16 +31,16 @@ absl::StatusOr<std::vector<SegmentTree>> BodyTrees(const Job& job) {
                              kSpectrumDone + (1 - kSpectrumDone) * done));
                        }));
     MARROW_RETURN_IF_ERROR(reported);
-    trees.push_back(std::move(merged.tree));
+    trees.push_back(std::move(merged));
     before += body->share();
   }
   return trees;
 }
 
-SegmentTree OneTree(const Prepared& prepared, std::vector<SegmentTree> trees) {
-  if (prepared.bodies.IsWhole()) return std::move(trees[0]);
+SegmentTree OneTree(const Prepared& prepared, std::vector<MergeTree>& trees) {
+  if (prepared.bodies.IsWhole()) return std::move(trees[0].tree);
   std::vector<const SegmentTree*> pointers;
-  for (const SegmentTree& tree : trees) pointers.push_back(&tree);
+  for (const MergeTree& tree : trees) pointers.push_back(&tree.tree);
   return PlantForest(prepared.canonical, prepared.areas, prepared.bodies,
                      pointers, BodyRoots::kNone);
 }
@@ -43,13 +48,20 @@ SegmentTree OneTree(const Prepared& prepared, std::vector<SegmentTree> trees) {
 }  // namespace
 
 absl::Status MergeLevels(const Job& job) {
-  MARROW_ASSIGN_OR_RETURN(std::vector<SegmentTree> trees, BodyTrees(job));
-  const SegmentTree tree = OneTree(job.prepared, std::move(trees));
+  MARROW_ASSIGN_OR_RETURN(std::vector<MergeTree> trees, BodyTrees(job));
+  MergedPieces pieces = JoinPieces(job.prepared.bodies, trees);
+  const size_t count =
+      std::min<size_t>(job.options.levels, std::size(kLevelSalience));
+  const auto whole = std::make_shared<const SegmentedMesh>(
+      job.workspace, job.options.split, OneTree(job.prepared, trees),
+      std::move(pieces),
+      std::vector<double>(kLevelSalience, kLevelSalience + count));
+  const SegmentTree& tree = whole->tree();
   for (uint32_t level = 1; level <= job.options.levels; ++level) {
     if (level > 1 && level > tree.nodes.back().level) break;
     MARROW_RETURN_IF_ERROR(EmitLevel(job, tree, level));
   }
-  return EmitTree(job, tree);
+  return EmitTree(job, whole);
 }
 
 }  // namespace marrow

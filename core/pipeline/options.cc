@@ -37,6 +37,32 @@ absl::Status ValidateOptions(const SegmentationOptions& options) {
   return absl::OkStatus();
 }
 
+absl::Status ValidateCut(const CutSpec& cut,
+                         const SegmentationOptions& options) {
+  switch (cut.by) {
+    case CutSpec::By::kAutomatic:
+      return absl::OkStatus();
+    case CutSpec::By::kLevel:
+      if (cut.level >= 1 && cut.level <= options.levels)
+        return absl::OkStatus();
+      return InvalidField(
+          "cut.level",
+          absl::StrCat("is ", cut.level, ", must be from 1 to ", options.levels,
+                       ", the number of levels of the tree"));
+    case CutSpec::By::kSegments:
+      if (cut.segments >= 1) return absl::OkStatus();
+      return InvalidField("cut.segments", "is 0, must be at least 1");
+    case CutSpec::By::kSalience:
+      if (options.method == Method::kPaper)
+        return InvalidField("cut.salience",
+                            "the paper's method knows no salience; cut by "
+                            "level or by number of segments, or choose the "
+                            "method merge");
+      return CheckRange("cut.salience", cut.salience, {"salience", 0, 1});
+  }
+  return absl::OkStatus();
+}
+
 absl::Status ValidateEigenPairs(uint32_t eigen_pairs, const char* field) {
   return CheckRange(field, eigen_pairs, kRanges[4]);
 }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "absl/status/status.h"
+#include "core/hierarchy/cut.h"
 #include "core/pieces/split_region.h"
 
 namespace marrow {
@@ -37,6 +38,10 @@ std::span<const ParameterRange> ParameterRanges();
 // INVALID_ARGUMENT that names the field, such as "options.kappa", its value
 // and its range. NaN is out of every range.
 absl::Status ValidateOptions(const SegmentationOptions& options);
+// INVALID_ARGUMENT that names the field, such as "cut.level". What nodes it
+// names is seen once there is a tree. REQUIRES: the options are valid.
+absl::Status ValidateCut(const CutSpec& cut,
+                         const SegmentationOptions& options);
 absl::Status ValidateEigenPairs(uint32_t eigen_pairs, const char* field);
 
 }  // namespace marrow

@@ -1,5 +1,6 @@
 #include "core/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -68,21 +69,36 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(ValidateOptions(options));
   Reporter reporter(sink, cancel);
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kMesh, 0));
-  MARROW_ASSIGN_OR_RETURN(CanonicalMesh canonical,
-                          LoadCanonical(draco_bytes, limits));
-  const Bodies bodies = FindBodies(canonical);
+  const auto workspace = std::make_shared<Workspace>();
+  CanonicalMesh& canonical = workspace->canonical;
+  MARROW_ASSIGN_OR_RETURN(canonical, LoadCanonical(draco_bytes, limits));
+  const Bodies& bodies = workspace->bodies = FindBodies(canonical);
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
   MARROW_ASSIGN_OR_RETURN(
       const auto eigen_pairs,
       PullPairs(bodies, options.eigen_pairs, pairs, cancel, reporter));
-  const Prepared prepared = Prepare(canonical, bodies);
-  std::vector<std::unique_ptr<PreparedBody>> prepared_bodies;
+  const Prepared& prepared =
+      workspace->prepared.emplace(Prepare(canonical, bodies));
   for (size_t b = 0; b < eigen_pairs.size(); ++b)
-    prepared_bodies.push_back(std::make_unique<PreparedBody>(
+    workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
         prepared, bodies.bodies[b], eigen_pairs[b]));
-  const Job job{prepared, prepared_bodies, options, cancel, reporter, sink};
+  const Job job{workspace, prepared, workspace->prepared_bodies,
+                options,   cancel,   reporter,
+                sink};
   return options.method == Method::kMerge ? MergeLevels(job) : SplitLevels(job);
+}
+
+absl::Status Replay(const std::shared_ptr<const SegmentedMesh>& mesh,
+                    const CancelToken& cancel, Sink& sink) {
+  Reporter reporter(sink, cancel);
+  MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(mesh->canonical())));
+  const SegmentTree& tree = mesh->tree();
+  const uint32_t levels = std::max(1u, tree.nodes.back().level);
+  for (uint32_t level = 1; level <= levels; ++level)
+    MARROW_RETURN_IF_ERROR(
+        EmitLevel({mesh->prepared(), reporter, sink}, tree, level));
+  return EmitTree({mesh->prepared(), reporter, sink}, mesh);
 }
 
 }  // namespace marrow

@@ -3,6 +3,7 @@
 #define MARROW_CORE_PIPELINE_PIPELINE_H_
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/mesh/canonical_mesh.h"
 #include "core/mesh/decode.h"
 #include "core/pipeline/options.h"
+#include "core/pipeline/segmented_mesh.h"
 #include "core/skeleton/skeleton.h"
 #include "core/spectrum/eigen_pairs.h"
 
@@ -47,6 +49,10 @@ class Sink {
   // The tree is whole: the splits (children, iterations, stop reason) of every
   // node are final.
   virtual bool OnTree(const SegmentTree& tree) = 0;
+  // The last: what any cut of the tree is made from, for as long as it is held.
+  virtual bool OnSegmentedMesh(std::shared_ptr<const SegmentedMesh>) {
+    return true;
+  }
 };
 
 // DecodeDraco, Canonicalize, then FindBodies for the report.
@@ -58,11 +64,17 @@ absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
 std::vector<uint32_t> PointOfVertex(const CanonicalMesh& mesh);
 
 // Segments the mesh. Calls the sink in the order OnMesh, (OnLevel)+, OnTree,
-// with OnProgress between. Deterministic. Thread safe for different sinks.
-// Errors: those of ValidateOptions, LoadMesh and EigenPairSource; CANCELLED.
+// OnSegmentedMesh, with OnProgress between. Deterministic. Thread safe for
+// different sinks. Errors: those of ValidateOptions, LoadMesh and
+// EigenPairSource; CANCELLED.
 absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
                  const SegmentationOptions& options, EigenPairSource& pairs,
                  const CancelToken& cancel, Sink& sink);
+
+// Tells the sink again what Run() told of the mesh, in the same order and to
+// the last bit, progress aside. Errors: CANCELLED.
+absl::Status Replay(const std::shared_ptr<const SegmentedMesh>& mesh,
+                    const CancelToken& cancel, Sink& sink);
 
 }  // namespace marrow
 

@@ -65,6 +65,11 @@ class Forest {
   const SegmentTree& tree() const {
     return prepared_.bodies.IsWhole() ? bodies_[0].builder.tree() : tree_;
   }
+  // At most once, and the last.
+  SegmentTree TakeTree() {
+    return prepared_.bodies.IsWhole() ? bodies_[0].builder.TakeTree()
+                                      : std::move(tree_);
+  }
 
  private:
   void Plant() {
@@ -101,7 +106,9 @@ absl::Status SplitLevels(const Job& job) {
     if (!deeper) break;
   }
   forest.StopAtDepth();
-  return EmitTree(job, forest.tree());
+  return EmitTree(job,
+                  std::make_shared<const SegmentedMesh>(
+                      job.workspace, job.options.split, forest.TakeTree()));
 }
 
 }  // namespace marrow

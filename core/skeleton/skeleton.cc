@@ -179,13 +179,12 @@ void JoinBodies(const std::vector<Eigen::Vector3d>& centres, uint32_t root,
   }
 }
 
-// The place of the segment that has most of the faces around the root's medial
-// structure.
-uint32_t RootPlace(const Adjacency& adjacency, const SegmentTree& tree,
-                   const std::vector<uint32_t>& place, size_t num_places) {
-  std::vector<uint32_t> votes(num_places, 0);
-  for (uint32_t v : tree.nodes[0].medial_structure)
-    for (uint32_t f : adjacency.VertexFaces(v)) ++votes[place[f]];
+// The place of the segment that has most of the faces around the vertices.
+uint32_t RootPlace(const Adjacency& adjacency, const SegmentCover& cover,
+                   const std::vector<uint32_t>& vertices) {
+  std::vector<uint32_t> votes(cover.ids.size(), 0);
+  for (uint32_t v : vertices)
+    for (uint32_t f : adjacency.VertexFaces(v)) ++votes[cover.place_of_face[f]];
   return static_cast<uint32_t>(std::max_element(votes.begin(), votes.end()) -
                                votes.begin());
 }
@@ -260,20 +259,30 @@ Skeleton LayOut(const std::vector<Reached>& order,
 Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
                        const SegmentTree& tree, uint32_t level,
                        Bridges bridges) {
-  const std::vector<uint32_t> segments = tree.SegmentsAtLevel(level);
-  std::vector<uint32_t> place(mesh.NumFaces());
-  std::vector<Eigen::Vector3d> centres;
-  for (uint32_t s = 0; s < segments.size(); ++s) {
-    for (uint32_t f : tree.nodes[segments[s]].faces) place[f] = s;
-    centres.push_back(tree.nodes[segments[s]].centroid);
+  SegmentCover cover;
+  cover.ids = tree.SegmentsAtLevel(level);
+  cover.place_of_face.resize(mesh.NumFaces());
+  for (uint32_t s = 0; s < cover.ids.size(); ++s) {
+    const SegmentNode& node = tree.nodes[cover.ids[s]];
+    for (uint32_t f : node.faces) cover.place_of_face[f] = s;
+    cover.centres.push_back(node.centroid);
   }
-  const uint32_t root = RootPlace(adjacency, tree, place, segments.size());
+  return BuildSkeleton(mesh, adjacency, cover, tree.nodes[0].medial_structure,
+                       bridges);
+}
+
+Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
+                       const SegmentCover& cover,
+                       const std::vector<uint32_t>& centre_of_mesh,
+                       Bridges bridges) {
+  const uint32_t root = RootPlace(adjacency, cover, centre_of_mesh);
   const std::vector<Boundary> boundaries =
-      FindBoundaries(mesh, adjacency, place, bridges);
-  DisjointSets joined(static_cast<uint32_t>(segments.size()));
+      FindBoundaries(mesh, adjacency, cover.place_of_face, bridges);
+  DisjointSets joined(static_cast<uint32_t>(cover.ids.size()));
   std::vector<Link> links = StrongLinks(boundaries, joined);
-  JoinBodies(centres, root, joined, links);
-  return LayOut(ShortestWays(links, centres, root), segments, centres);
+  JoinBodies(cover.centres, root, joined, links);
+  return LayOut(ShortestWays(links, cover.centres, root), cover.ids,
+                cover.centres);
 }
 
 }  // namespace marrow

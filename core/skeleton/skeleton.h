@@ -39,6 +39,20 @@ Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
                        const SegmentTree& tree, uint32_t level,
                        std::span<const std::array<uint32_t, 2>> bridges = {});
 
+// Segments that cover a mesh, from whatever cut.
+struct SegmentCover {
+  std::vector<uint32_t> ids;             // ascending
+  std::vector<uint32_t> place_of_face;   // face -> index of its id
+  std::vector<Eigen::Vector3d> centres;  // of mass, of each
+};
+
+// The same of any segments; `centre_of_mesh` is the whole mesh's medial
+// structure.
+Skeleton BuildSkeleton(const TriangleMesh& mesh, const Adjacency& adjacency,
+                       const SegmentCover& cover,
+                       const std::vector<uint32_t>& centre_of_mesh,
+                       std::span<const std::array<uint32_t, 2>> bridges);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_SKELETON_SKELETON_H_

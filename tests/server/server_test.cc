@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/boundaries/calibration.h"
 #include "marrow/v1/capabilities_service.grpc.pb.h"
 #include "tests/server/service_fixture.h"
 
@@ -123,6 +124,8 @@ TEST_F(ServerTest, CapabilitiesGiveLimitsAndDefaults) {
   EXPECT_EQ(response.mesh_limits().max_faces(), 123u);
   EXPECT_EQ(response.mesh_limits().max_inline_mesh_bytes(), 1u << 20);
   EXPECT_EQ(response.default_options().kappa(), 1.5);
+  EXPECT_EQ(response.automatic_salience(), kAutomaticSalience);
+  EXPECT_EQ(response.result_cache_bytes(), options_.result_cache_bytes);
   EXPECT_EQ(response.default_options().eigen_pairs(), 200u);
   EXPECT_THAT(response.methods(),
               ::testing::ElementsAre(v1::METHOD_PAPER, v1::METHOD_MERGE));

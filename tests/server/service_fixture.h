@@ -70,6 +70,7 @@ struct Answer {
       if (event.has_accepted()) event.mutable_accepted()->clear_job_id();
       if (event.has_completed()) {
         event.mutable_completed()->clear_timings();
+        event.mutable_completed()->clear_result();
         event.mutable_completed()->mutable_spectrum()->clear_outcome();
         event.mutable_completed()->mutable_spectrum()->clear_solver_runs();
       }

@@ -3,6 +3,7 @@
 #define MARROW_TESTS_TESTING_RECORDING_SINK_H_
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,11 @@ class RecordingSink : public Sink {
     events.push_back("tree");
     return Answer("tree");
   }
+  bool OnSegmentedMesh(
+      std::shared_ptr<const SegmentedMesh> whole_mesh) override {
+    segmented = std::move(whole_mesh);
+    return Answer("segmented mesh");
+  }
 
   std::vector<std::string> events;  // without progress
   std::vector<Stage> stages;
@@ -54,6 +60,7 @@ class RecordingSink : public Sink {
   CanonicalMesh mesh;
   std::vector<Level> levels;
   SegmentTree tree;
+  std::shared_ptr<const SegmentedMesh> segmented;
   uint32_t calls_after_refusal = 0;
 
  private:

@@ -112,11 +112,13 @@ TEST_F(MarrowSegmentTest, WritesEveryFileOfTheContract) {
   EXPECT_THAT(run.out, HasSubstr("segments at level 1"));
   EXPECT_THAT(
       ListFolder(Out()),
-      ElementsAre("octopus.json", "octopus.level-1.ply", "octopus.level-1.png",
+      ElementsAre("octopus.cut.ply", "octopus.cut.png", "octopus.cut.seg",
+                  "octopus.json", "octopus.level-1.ply", "octopus.level-1.png",
                   "octopus.level-1.seg", "octopus.level-2.ply",
                   "octopus.level-2.png", "octopus.level-2.seg",
                   "octopus.parts.obj", "octopus.seg"));
   EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.level-2.seg")));
+  EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.cut.seg")));
   EXPECT_EQ(Lines(ReadFile(Out("octopus.seg"))).size(), 5000u);
 }
 
@@ -159,9 +161,10 @@ TEST_F(MarrowSegmentTest, LevelsAreNested) {
 TEST_F(MarrowSegmentTest, FewerLevelsLeaveNothingOfADeeperRun) {
   ASSERT_EQ(Segment({Sample(), "--png", "--parts"}).code, 0);
   ASSERT_EQ(Segment({Sample(), "--levels", "1"}).code, 0);
-  EXPECT_THAT(ListFolder(Out()),
-              ElementsAre("octopus.json", "octopus.level-1.ply",
-                          "octopus.level-1.seg", "octopus.seg"));
+  EXPECT_THAT(
+      ListFolder(Out()),
+      ElementsAre("octopus.cut.ply", "octopus.cut.seg", "octopus.json",
+                  "octopus.level-1.ply", "octopus.level-1.seg", "octopus.seg"));
   EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.level-1.seg")));
 }
 
@@ -251,11 +254,13 @@ TEST_F(MarrowSegmentTest, OneFileFailsAndTheOthersAreDone) {
 
 TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
   const std::vector<std::array<std::string, 2>> cases = {
-      {"--kappa", "-1"},    {"--kappa", "nan"}, {"--pairs", "0"},
-      {"--pairs", "1001"},  {"--delta", "1"},   {"--epsilon", "2"},
-      {"--tolerance", "9"}, {"--levels", "0"},  {"--levels", "9"},
-      {"--pairs", "x"},     {"--timeout", "0"}, {"--quantize", "31"},
-      {"--method", "guess"}};
+      {"--kappa", "-1"},       {"--kappa", "nan"},   {"--pairs", "0"},
+      {"--pairs", "1001"},     {"--delta", "1"},     {"--epsilon", "2"},
+      {"--tolerance", "9"},    {"--levels", "0"},    {"--levels", "9"},
+      {"--pairs", "x"},        {"--timeout", "0"},   {"--quantize", "31"},
+      {"--method", "guess"},   {"--cut", "level:4"}, {"--cut", "segments:0"},
+      {"--cut", "salience:2"}, {"--cut", "half"},    {"--open", "9999"},
+      {"--closed", "x"}};
   for (const auto& [option, value] : cases) {
     const Finished run = Segment({Sample(), option, value});
     EXPECT_EQ(run.code, 2) << option << " " << value << run.err;
@@ -269,6 +274,53 @@ TEST_F(MarrowSegmentTest, TheMethodIsTheCallersChoice) {
   ASSERT_EQ(run.code, 0) << run.err;
   const json answer = json::parse(ReadFile(Out() + "/octopus.json"));
   EXPECT_GT(answer["tree"]["nodes"][0]["salience"], 0);
+}
+
+TEST_F(MarrowSegmentTest, TheCutIsTheCallersChoice) {
+  const auto cut_by = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {Sample(), "--method", "merge",
+                                          "--pairs", "40"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Finished run = Segment(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr(" in the cut"));
+    const auto lines = Lines(ReadFile(Out("octopus.cut.seg")));
+    const json cut = json::parse(ReadFile(Out("octopus.json")))["cut"];
+    std::set<std::string> ids;
+    for (const json& segment : cut["segments"]) {
+      ids.insert(segment["id"].dump());
+    }
+    EXPECT_EQ(std::set(lines.begin(), lines.end()), ids);
+    EXPECT_EQ(ids.size(), cut["number"]);
+    return cut;
+  };
+  EXPECT_LE(cut_by({"--cut", "segments:4"})["number"], 4);
+  EXPECT_EQ(cut_by({"--cut", "segments:1"})["number"], 1);
+  const json by_salience = cut_by({"--cut", "salience:0.125"});
+  EXPECT_EQ(by_salience["salience"], 0.125);
+  EXPECT_EQ(by_salience["spec"], "salience:0.125");
+  cut_by({"--cut", "level:1"});
+  EXPECT_EQ(ReadFile(Out("octopus.cut.seg")),
+            ReadFile(Out("octopus.level-1.seg")));
+  EXPECT_EQ(cut_by({"--cut", "level:3", "--closed", "0"})["number"], 1);
+  const json open = cut_by({"--cut", "segments:1", "--open", "0,0"});
+  EXPECT_GT(open["number"], 1);
+  EXPECT_EQ(open["open"], json::parse("[0,0]"));
+}
+
+TEST_F(MarrowSegmentTest, WithoutAServerACutIsMadeAnew) {
+  const Finished run =
+      RunProgram({ProgramPath("marrow"), "cut", Sample(), "-o", Out(), "--cut",
+                  "segments:5", "--png", "--parts", "--pairs", "40"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("made anew"));
+  EXPECT_THAT(
+      ListFolder(Out()),
+      ElementsAre("octopus.cut.json", "octopus.cut.parts.obj",
+                  "octopus.cut.ply", "octopus.cut.png", "octopus.cut.seg"));
+  const json result = json::parse(ReadFile(Out("octopus.cut.json")));
+  EXPECT_LE(result["cut"]["number"], 5);
+  EXPECT_EQ(result["schema"], "marrow.cut/1");
 }
 
 TEST_F(MarrowSegmentTest, TwoInputsWithOneStemAreRefusedBeforeAnyWork) {
@@ -313,7 +365,8 @@ TEST_F(MarrowSegmentTest, JsonIsALineAnEventInOrder) {
     }
   }
   EXPECT_THAT(names, ElementsAre("accepted", "mesh_report", "level", "skeleton",
-                                 "level", "skeleton", "completed", "summary"));
+                                 "level", "skeleton", "cut", "skeleton",
+                                 "completed", "summary"));
 }
 
 TEST_F(MarrowSegmentTest, SeveralFilesAreToldInTheirOrder) {

@@ -77,6 +77,36 @@ TEST_F(MarrowServerTest, HealthSaysServing) {
             0);
 }
 
+TEST_F(MarrowServerTest, CutsAgainWhatItHasSegmented) {
+  const auto call = [&](const std::string& command, const std::string& cut,
+                        const std::string& out) {
+    return RunProgram({ProgramPath("marrow"), command, File("h.off"),
+                       "--method", "merge", "--pairs", "60", "--server",
+                       address_, "--cut", cut, "-o", File(out)});
+  };
+  const Finished early = call("cut", "auto", "early");
+  EXPECT_EQ(early.code, 1);
+  EXPECT_THAT(early.err, HasSubstr("marrow segment"));
+  EXPECT_FALSE(std::filesystem::exists(File("early")));
+
+  ASSERT_EQ(call("segment", "segments:4", "once").code, 0);
+  const Finished again = call("cut", "segments:4", "again");
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(ReadFile(File("again/h.cut.seg")),
+            ReadFile(File("once/h.cut.seg")));
+  EXPECT_EQ(ReadFile(File("again/h.cut.ply")),
+            ReadFile(File("once/h.cut.ply")));
+  const json once = json::parse(ReadFile(File("once/h.json")));
+  const json cut = json::parse(ReadFile(File("again/h.cut.json")));
+  EXPECT_EQ(cut["cut"], once["cut"]);
+  EXPECT_EQ(cut["cache"]["result"], "hit");
+  EXPECT_EQ(cut["cache"]["solver_runs"], 0);
+
+  const Finished bad = call("cut", "level:4", "bad");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("--cut is 4"));
+}
+
 TEST_F(MarrowServerTest, AServerAndTheEmbeddedServiceGiveTheSameFiles) {
   const Finished remote =
       RunProgram({ProgramPath("marrow"), "segment", File("h.off"), "-o",
@@ -87,7 +117,7 @@ TEST_F(MarrowServerTest, AServerAndTheEmbeddedServiceGiveTheSameFiles) {
                 .code,
             0);
   const std::vector<std::string> names = ListFolder(File("remote"));
-  EXPECT_EQ(names.size(), 8u);
+  EXPECT_EQ(names.size(), 10u);
   ASSERT_EQ(ListFolder(File("embedded")), names);
   for (const std::string& name : names) {
     const std::string a = ReadFile(File("remote/" + name));

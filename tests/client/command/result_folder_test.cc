@@ -24,13 +24,16 @@ TEST(ResultFolderTest, TheStemIsTheNameWithoutFolderAndExtension) {
 }
 
 TEST(ResultFolderTest, KnowsItsOwnFilesFromOthers) {
-  for (const char* name : {"a.seg", "a.json", "a.parts.obj", "a.level-1.seg",
-                           "a.level-12.ply", "a.level-3.png"}) {
+  for (const char* name :
+       {"a.seg", "a.json", "a.parts.obj", "a.level-1.seg", "a.level-12.ply",
+        "a.level-3.png", "a.cut.seg", "a.cut.ply", "a.cut.png", "a.cut.json",
+        "a.cut.parts.obj"}) {
     EXPECT_TRUE(IsResultName("a", name)) << name;
   }
   for (const char* name :
        {"a.off", "a.obj", "ab.seg", "a.level-.seg", "a.level-1.obj", "a",
-        "a.level-1x.ply", "b.json", "a.level-1.ply.bak"}) {
+        "a.level-1x.ply", "b.json", "a.level-1.ply.bak", "a.cut", "a.cut.obj",
+        "a.cuts.seg"}) {
     EXPECT_FALSE(IsResultName("a", name)) << name;
   }
 }
@@ -39,7 +42,7 @@ TEST(ResultFolderTest, RefusesInputsThatWouldWriteOneFile) {
   EXPECT_TRUE(CheckStems({"a.off", "b.off", "x/c.off"}).ok());
   EXPECT_TRUE(CheckStems({"a.off", "a.levels.off", "a.level-x.off"}).ok());
   for (const char* other :
-       {"y/a.obj", "./a.off", "a.level-2.ply", "a.parts.obj"}) {
+       {"y/a.obj", "./a.off", "a.level-2.ply", "a.parts.obj", "a.cut.off"}) {
     const absl::Status status = CheckStems({"a.off", other});
     EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << other;
     EXPECT_THAT(std::string(status.message()), HasSubstr(other));
@@ -59,6 +62,21 @@ TEST(ResultFolderTest, ReplacesAllResultsOfAnEarlierRunAndNothingElse) {
               ElementsAre("a.level-1.seg", "a.off", "a.seg", "ab.seg"));
   EXPECT_EQ(ReadFile(folder / "a.seg"), "new");
   EXPECT_EQ(ReadFile(folder / "ab.seg"), "old");
+}
+
+TEST(ResultFolderTest, ACutReplacesAnEarlierCutAlone) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"a.seg", "a.level-1.seg", "a.cut.seg", "a.cut.png"}) {
+    WriteFile(folder / name, "old");
+  }
+  ASSERT_TRUE(PublishResults(folder.path(), "a",
+                             {{"a.cut.seg", "new"}, {"a.cut.json", "new"}},
+                             ResultScope::kCut)
+                  .ok());
+  EXPECT_THAT(ListFolder(folder.path()),
+              ElementsAre("a.cut.json", "a.cut.seg", "a.level-1.seg", "a.seg"));
+  EXPECT_EQ(ReadFile(folder / "a.cut.seg"), "new");
 }
 
 // A folder stands where a file must go: all is as it was before.

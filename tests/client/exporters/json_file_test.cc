@@ -57,9 +57,10 @@ TEST(JsonFileTest, HasTheDocumentedKeysInOrder) {
   const Json root = Json::parse(Write(MakeSegmentation()));
   std::vector<std::string> keys;
   for (const auto& [key, value] : root.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre("schema", "mesh", "tree",
-                                         "automatic_cut", "levels", "skeletons",
-                                         "report", "timings", "cache"));
+  EXPECT_THAT(keys, testing::ElementsAre(
+                        "schema", "mesh", "tree", "automatic_cut", "cut",
+                        "levels", "skeletons", "report", "timings", "cache"));
+  EXPECT_TRUE(root["cut"].is_null());
   EXPECT_EQ(root["schema"], "marrow.segmentation/1");
   EXPECT_EQ(root["mesh"], Json::parse(R"({"name": "strip.obj",
                                           "vertices": 8, "faces": 5})"));
@@ -109,6 +110,55 @@ TEST(JsonFileTest, WritesSkeletons) {
       {"id": 2, "parent": 1, "kind": "segment",
        "position": [0.0, 0.0, 0.0], "segments": [2]}],
       "bones": [{"from": 0, "to": 1}, {"from": 1, "to": 2}]}])"));
+}
+
+client::Cut MakeCut() {
+  client::Cut cut;
+  cut.segments.resize(2);
+  cut.segments[0].id = 2;
+  SegmentNode& other = cut.segments[1];
+  other.id = 9;
+  other.parent = 1;
+  other.level = 2;
+  other.area = 4;
+  other.centroid = {1, 2, 3};
+  other.medial_structure = {5};
+  other.salience = 0.5;
+  cut.salience = 0.625;
+  cut.level.face_labels = {9, 9, 2, 9, 2};
+  cut.level.skeleton.joints = {{.id = 0, .segments = {2}},
+                               {.id = 1, .parent = 0, .segments = {9}}};
+  return cut;
+}
+
+TEST(JsonFileTest, WritesTheCut) {
+  Segmentation segmentation = MakeSegmentation();
+  segmentation.cut = MakeCut();
+  const CutNote asked = {"segments:2", {4}, {0, 1}};
+  const Json cut = Json::parse(
+      JsonFile("strip.obj", MakeStrip().mesh, segmentation, asked))["cut"];
+  EXPECT_EQ(cut["spec"], "segments:2");
+  EXPECT_EQ(cut["closed"], Json({4}));
+  EXPECT_EQ(cut["open"], Json({0, 1}));
+  EXPECT_EQ(cut["number"], 2);
+  EXPECT_EQ(cut["salience"], 0.625);
+  EXPECT_EQ(cut["segments"][0]["faces"], 2);
+  EXPECT_TRUE(cut["segments"][0]["parent"].is_null());
+  EXPECT_EQ(cut["segments"][1], Json::parse(R"({
+      "id": 9, "faces": 3, "parent": 1, "level": 2, "area": 4.0,
+      "centroid": [1.0, 2.0, 3.0], "medial_structure": [5],
+      "salience": 0.5})"));
+  EXPECT_EQ(cut["skeleton"]["joints"].size(), 2u);
+  EXPECT_EQ(cut["skeleton"]["bones"], Json::parse(R"([{"from": 0, "to": 1}])"));
+  EXPECT_FALSE(cut["skeleton"].contains("level"));
+
+  const Json alone = Json::parse(
+      CutJsonFile("strip.obj", MakeStrip().mesh,
+                  {MakeCut(), {{"total", 1}}, {{"result", "hit"}}}, asked));
+  EXPECT_EQ(alone["schema"], "marrow.cut/1");
+  EXPECT_EQ(alone["mesh"]["faces"], 5);
+  EXPECT_EQ(alone["cut"], cut);
+  EXPECT_EQ(alone["cache"]["result"], "hit");
 }
 
 TEST(JsonFileTest, LongListsStayOnALine) {

@@ -93,5 +93,42 @@ TEST(OptionsTest, EigenPairsAloneNameTheirField) {
               HasSubstr("is 0, must be from 2 to 1000"));
 }
 
+std::string CutErrorOf(const CutSpec& cut, Method method) {
+  SegmentationOptions options;
+  options.method = method;
+  const absl::Status status = ValidateCut(cut, options);
+  EXPECT_EQ(ReasonOf(status), kReasonInvalidParameter);
+  EXPECT_THAT(std::string(status.message()),
+              ::testing::StartsWith(FieldOf(status)));
+  return std::string(status.message());
+}
+
+TEST(OptionsTest, RefusesCutsThatAreOutOfRangeAndSaysWhatIsNot) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (Method method : {Method::kPaper, Method::kMerge}) {
+    SegmentationOptions options;
+    options.method = method;
+    EXPECT_TRUE(ValidateCut({}, options).ok());
+    for (uint32_t level : {1u, 3u})
+      EXPECT_TRUE(ValidateCut(CutSpec::AtLevel(level), options).ok());
+    EXPECT_TRUE(ValidateCut(CutSpec::Into(1), options).ok());
+    for (uint32_t level : {0u, 4u})
+      EXPECT_THAT(CutErrorOf(CutSpec::AtLevel(level), method),
+                  HasSubstr("cut.level: is " + std::to_string(level) +
+                            ", must be from 1 to 3"));
+    EXPECT_THAT(CutErrorOf(CutSpec::Into(0), method),
+                HasSubstr("cut.segments: is 0, must be at least 1"));
+  }
+  SegmentationOptions merging;
+  merging.method = Method::kMerge;
+  for (double salience : {0.0, 0.5, 1.0})
+    EXPECT_TRUE(ValidateCut(CutSpec::AtSalience(salience), merging).ok());
+  for (double salience : {-0.1, 1.1, nan})
+    EXPECT_THAT(CutErrorOf(CutSpec::AtSalience(salience), Method::kMerge),
+                HasSubstr("must be from 0 to 1"));
+  EXPECT_THAT(CutErrorOf(CutSpec::AtSalience(0.5), Method::kPaper),
+              HasSubstr("choose the method merge"));
+}
+
 }  // namespace
 }  // namespace marrow

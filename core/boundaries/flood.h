@@ -1,0 +1,56 @@
+// How far faces are from a boundary, over the surface.
+#ifndef MARROW_CORE_BOUNDARIES_FLOOD_H_
+#define MARROW_CORE_BOUNDARIES_FLOOD_H_
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/mesh/adjacency.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// Floods one mesh again and again from different edges, in the time of what is
+// reached. Distances run along edges, in the unit of `positions`. Not thread
+// safe. The referents must outlive it.
+class Flood {
+ public:
+  Flood(const TriangleMesh& mesh, const Adjacency& adjacency,
+        const Positions& positions);
+
+  // Starts anew: from the ends of `edges`, over faces for which `within` holds,
+  // up to vertices at distance `limit`.
+  void Run(std::span<const uint32_t> edges, double limit,
+           const std::function<bool(uint32_t)>& within);
+
+  // Of the last run: the faces with a vertex nearer than the limit, in the
+  // order in which they were reached.
+  const std::vector<uint32_t>& faces() const { return faces_; }
+  // Mean distance of a reached face's corners.
+  double DistanceOf(uint32_t face) const;
+  // The greatest distance of a vertex, at most the limit.
+  double farthest() const { return farthest_; }
+
+ private:
+  using Entry = std::pair<double, uint32_t>;
+
+  void Reach(uint32_t vertex, double distance, double limit);
+
+  const TriangleMesh& mesh_;
+  const Adjacency& adjacency_;
+  const Positions& positions_;
+  // An entry counts where its stamp is run_.
+  uint32_t run_ = 0;
+  std::vector<uint32_t> vertex_stamp_, face_stamp_;
+  std::vector<double> distance_;
+  std::vector<Entry> heap_;
+  std::vector<uint32_t> faces_;
+  double farthest_ = 0;
+};
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_BOUNDARIES_FLOOD_H_

@@ -1,0 +1,28 @@
+// Labels of faces -> labels that are in one piece.
+#ifndef MARROW_CORE_PIECES_STRAY_PIECES_H_
+#define MARROW_CORE_PIECES_STRAY_PIECES_H_
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh/adjacency.h"
+
+namespace marrow {
+
+// A label in several connected pieces keeps the one of most area (ties: the
+// one with the least face); each other takes the label with which it shares the
+// longest boundary, counted in edges and links, where there is one. So every
+// label is in one piece afterwards where the mesh is.
+//
+// `links` are pairs of faces that count as neighbours. Labels are less than
+// `num_labels`. Deterministic.
+void JoinStrayPieces(const Adjacency& adjacency,
+                     const std::vector<double>& face_areas,
+                     std::span<const std::array<uint32_t, 2>> links,
+                     size_t num_labels, std::vector<uint32_t>& labels);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_PIECES_STRAY_PIECES_H_
