@@ -77,6 +77,14 @@ def pose_row(name, files, out):
             f"{min(counts)} to {max(counts)}"]
 
 
+def mean_row(rows):
+    """The means of the columns of means, the maxima of the others."""
+    columns = list(zip(*rows))
+    summary = [mean_and_max(column)[index % 2]
+               for index, column in enumerate(columns[3:7])]
+    return ["**all**", sum(columns[1]), sum(columns[2]), *summary, ""]
+
+
 def pose_table(folder, out):
     rows = [pose_row(name, files, out / "poses" / name.replace(" ", "-"))
             for name, files in pose_groups(folder).items()]
@@ -84,7 +92,7 @@ def pose_table(folder, out):
         segmenting.fail(f"{folder} has no two poses of a body")
     return document.table(
         ["body", "poses", "pairs", "RI, mean", "RI, most", "Hamming, mean",
-         "Hamming, most", "segments"], rows)
+         "Hamming, most", "segments"], rows + [mean_row(rows)])
 
 
 def read_clean(files, folder):

@@ -90,13 +90,14 @@ def read_answer(folder, stem):
 
 
 def commit():
-    """The commit of the sources, and whether they differ from it."""
+    """The last commit of what is measured, and whether it has been changed
+    since."""
     def git(*words):
-        return subprocess.run(["git", "-C", ROOT, *words], text=True,
-                              capture_output=True).stdout.strip()
-    changed = git("status", "--porcelain", "--", "core", "server", "client")
-    return git("rev-parse", "--short", "HEAD") + (
-        " with changes" if changed else "")
+        return subprocess.run(
+            ["git", "-C", ROOT, *words, "--", "core", "server", "client",
+             "proto"], text=True, capture_output=True).stdout.strip()
+    changed = " with changes" if git("status", "--porcelain") else ""
+    return (git("log", "-1", "--format=%h") or "unknown") + changed
 
 
 def occasion():

@@ -7,7 +7,8 @@ import argparse
 import pathlib
 import tempfile
 
-from PIL import Image, ImageChops, ImageDraw, ImageFont
+import numpy
+from PIL import Image, ImageDraw, ImageFont
 
 import segmenting
 
@@ -26,18 +27,28 @@ def font():
     return ImageFont.load_default()
 
 
+def drawn(picture):
+    """Which pixels are not of the colour of a corner."""
+    pixels = numpy.asarray(picture)
+    return (pixels != pixels[0, 0]).any(axis=2)
+
+
 def trimmed(picture):
-    """Without the empty border, whose colour is that of a corner."""
-    empty = Image.new("RGB", picture.size, picture.getpixel((0, 0)))
-    box = ImageChops.difference(picture, empty).getbbox()
+    """Without the empty border."""
+    box = Image.fromarray(drawn(picture)).getbbox()
     return picture.crop(box) if box else picture
 
 
 def views(picture):
-    """The two views, side by side without the space around them."""
-    half = picture.width // 2
-    sides = [trimmed(picture.crop((x, 0, x + half, picture.height)))
-             for x in (0, half)]
+    """The two views, side by side without the space around them; as they are
+    where no empty column lies between them."""
+    empty = numpy.flatnonzero(~drawn(picture).any(axis=0))
+    split = min(empty, key=lambda x: abs(x - picture.width // 2), default=0)
+    if not 0 < split < picture.width - 1:
+        return trimmed(picture)
+    sides = [trimmed(picture.crop(box)) for box in (
+        (0, 0, split, picture.height),
+        (split, 0, picture.width, picture.height))]
     gap = 24
     joined = Image.new("RGB", (sum(side.width for side in sides) + gap,
                                max(side.height for side in sides)), PAPER)
