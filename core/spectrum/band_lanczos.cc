@@ -1,21 +1,25 @@
 // Block Lanczos with full orthogonalisation for (A - shift I)^-1, whose largest
 // eigenvalues theta = 1 / (lambda - shift) are the nearest lambda.
 //
-// The process begins with the solutions of a random block: it saves one block
-// of a basis that would hold little of what is wanted. The projected matrix T
-// is kept whole, not tridiagonal, so that a block may hold new directions where
-// the process found an invariant subspace; that is how a cluster with more
-// members than a block has columns comes out whole.
+// The process begins with the solutions of blocks of coarse or random vectors,
+// not with those themselves: they would hold little of what is wanted. All that
+// the operator makes of the basis is kept in H, not its band alone, so that a
+// block may hold new directions where the process found an invariant subspace;
+// that is how a cluster with more members than a block has columns comes out
+// whole.
 //
-// With (A - shift I)^-1 V = V T + Q R and T s = theta s the Ritz vector V s has
-// a residual under A that may be huge, for what is rough in Q. The vector
-// (A - shift I)^-1 V s / theta = V s + Q R s / theta has |R s| / theta^2, free
-// of it (Ericsson and Ruhe 1980). It is taken for the eigenvector.
+// V are the vectors that the operator was applied to, Q those of the basis that
+// wait for it: (A - shift I)^-1 V = V T + Q R, H = [T; R]. With T s = theta s
+// the Ritz vector V s has a residual under A that may be huge, for what is rough
+// in Q. The vector (A - shift I)^-1 V s / theta = V s + Q R s / theta has
+// |R s| / theta^2, free of it (Ericsson and Ruhe 1980). It is taken for the
+// eigenvector.
 #include "core/spectrum/band_lanczos.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -38,6 +42,8 @@ constexpr double kKnownShare = 0.02;
 constexpr double kResolvedShare = 0.05;
 // Looking for convergence in a basis of fewer vectors a pair is in vain.
 constexpr double kFirstLook = 1.5;
+// Blocks solved for at once.
+constexpr int kTogether = 2;
 
 // Ritz pairs on one side of the shift, the nearest first.
 struct Side {
@@ -50,70 +56,107 @@ class BandFinder {
  public:
   BandFinder(const SupernodalStructure& matrix, const SupernodalFactor& factor,
              const BandRequest& request, LanczosWorkspace& workspace,
-             const CancelToken& cancel)
+             Team& team, const CancelToken& cancel)
       : matrix_(matrix),
         factor_(factor),
         request_(request),
+        team_(team),
         cancel_(cancel),
-        basis_(matrix.n, workspace.blocks),
+        basis_(matrix.n, workspace.blocks, team),
         seed_(1000 * request.extra_steps) {}
 
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
     MARROW_RETURN_IF_ERROR(Start());
     const int wanted = request_.below + request_.above;
-    const int first_look = static_cast<int>(kFirstLook * wanted);
     const int most = std::min(matrix_.n - kBlock, 6 * wanted + 20 * kBlock);
+    const int first_look = std::min(
+        std::max(static_cast<int>(kFirstLook * wanted) / kBlock,
+                 basis_.num_blocks()),
+        most / kBlock - 1);
     int extra = request_.extra_steps;
-    const int next_look = std::min(first_look, most - kBlock);
-    while (T_.rows() + kBlock <= most) {
+    while (basis_.dimension() < most) {
       MARROW_RETURN_IF_ERROR(Step());
       on_step();
-      if (T_.rows() < next_look || !Converged()) continue;
+      if (num_solved_ < first_look || !Converged()) continue;
       if (extra-- <= 0) return Extract();
     }
     return absl::InternalError(
         absl::StrCat("the pairs about ", factor_.shift(),
-                     " did not converge in ", T_.rows(), " dimensions"));
+                     " did not converge in ", basis_.dimension(),
+                     " dimensions"));
   }
 
  private:
-  void Fill(double* Z) {
+  void FillAnew(double* Z) {
     basis_.FillRandomly(Z, ++seed_);
-    factor_.Solve(Z);
+    double* const blocks[] = {Z};
+    factor_.Solve(blocks);
   }
 
   absl::Status Append(LanczosBasis::Growth& growth) {
-    return basis_.Append([this](double* Z) { Fill(Z); }, cancel_, growth);
+    return basis_.Append([this](double* Z) { FillAnew(Z); }, cancel_, growth);
   }
 
+  // The solutions of as many blocks as the start has, at least one.
   absl::Status Start() {
-    Fill(basis_.Block(0));
-    LanczosBasis::Growth unused;
-    return Append(unused);
+    const int blocks =
+        std::max(1, (request_.start_count + kBlock - 1) / kBlock);
+    for (int b = 0; b < blocks; b += kTogether) {
+      const int count = std::min(kTogether, blocks - b);
+      for (int i = 0; i < count; ++i) {
+        double* X = basis_.Block(basis_.num_blocks() + i);
+        basis_.FillRandomly(X, ++seed_);
+        if (request_.start != nullptr)
+          request_.start->Fill(request_.start_first + (b + i) * kBlock, X);
+      }
+      LanczosBasis::Growth unused;
+      MARROW_RETURN_IF_ERROR(SolveNew(count));
+      for (int i = 0; i < count; ++i) MARROW_RETURN_IF_ERROR(Append(unused));
+    }
+    return absl::OkStatus();
   }
 
-  // Extends T by a block, and the basis by the next.
-  absl::Status Step() {
-    const double* last = basis_.Block(basis_.num_blocks() - 1);
-    double* next = basis_.Block(basis_.num_blocks());
-    std::copy_n(last, static_cast<size_t>(matrix_.n) * kBlock, next);
+  absl::Status SolveNew(int count) {
     MARROW_RETURN_IF_ERROR(cancel_.Check());
-    factor_.Solve(next);
-    LanczosBasis::Growth growth;
-    MARROW_RETURN_IF_ERROR(Append(growth));
-    const int old = static_cast<int>(T_.rows());
-    T_.conservativeResize(old + kBlock, old + kBlock);
-    T_.rightCols(kBlock) = growth.projection;
-    T_.bottomRows(kBlock) = growth.projection.transpose();
-    R_ = growth.remainder;
+    double* blocks[kTogether];
+    for (int i = 0; i < count; ++i)
+      blocks[i] = basis_.Block(basis_.num_blocks() + i);
+    if (team_.threads() == 1) {
+      factor_.Solve({blocks, static_cast<size_t>(count)});
+    } else {
+      team_.For(count, [&](int i) { factor_.Solve({blocks + i, 1}); });
+    }
+    return cancel_.Check();
+  }
+
+  // Takes the next blocks of the basis through the operator.
+  absl::Status Step() {
+    const int count = std::min(kTogether, basis_.num_blocks() - num_solved_);
+    for (int i = 0; i < count; ++i)
+      std::copy_n(basis_.Block(num_solved_ + i),
+                  static_cast<size_t>(matrix_.n) * kBlock,
+                  basis_.Block(basis_.num_blocks() + i));
+    MARROW_RETURN_IF_ERROR(SolveNew(count));
+    for (int i = 0; i < count; ++i) {
+      LanczosBasis::Growth growth;
+      MARROW_RETURN_IF_ERROR(Append(growth));
+      const Eigen::Index columns = H_.cols();
+      H_.conservativeResizeLike(
+          Eigen::MatrixXd::Zero(basis_.dimension(), columns + kBlock));
+      H_.block(0, columns, basis_.dimension() - kBlock, kBlock) =
+          growth.projection;
+      H_.bottomRightCorner(kBlock, kBlock) = growth.remainder;
+      ++num_solved_;
+    }
     return absl::OkStatus();
   }
 
   // Solves the projected problem and picks the pairs.
   bool Converged() {
-    const Eigen::MatrixXd symmetric = 0.5 * (T_ + T_.transpose());
-    ritz_.compute(symmetric);
-    tail_ = R_ * ritz_.eigenvectors().bottomRows(kBlock);
+    const Eigen::Index m = H_.cols();
+    const Eigen::MatrixXd T = H_.topRows(m);
+    ritz_.compute(0.5 * (T + T.transpose()));
+    tail_ = H_.bottomRows(H_.rows() - m) * ritz_.eigenvectors();
     above_ = MakeSide(true);
     below_ = MakeSide(false);
     if (below_.value.empty() && above_.value.empty()) return false;
@@ -210,12 +253,11 @@ class BandFinder {
     return count < static_cast<int>(side.value.size());
   }
 
-  // Of the vectors in the basis, the last block included; orthonormalised,
-  // which is a matter of their tails alone.
+  // Of the vectors in the basis, those not yet solved for included;
+  // orthonormalised, which is a matter of their tails alone.
   RowMajorMatrix Coefficients(const std::vector<int>& chosen) const {
-    const int m = static_cast<int>(T_.rows());
     const int count = static_cast<int>(chosen.size());
-    Eigen::MatrixXd coefficients(m + kBlock, count);
+    Eigen::MatrixXd coefficients(H_.rows(), count);
     for (int c = 0; c < count; ++c) {
       const double theta = ritz_.eigenvalues()[chosen[c]];
       coefficients.col(c) << ritz_.eigenvectors().col(chosen[c]),
@@ -228,25 +270,24 @@ class BandFinder {
 
   absl::Status WriteVectors(const RowMajorMatrix& coefficients, Band& band) {
     const int count = static_cast<int>(band.values.size());
-    const size_t n = matrix_.n;
-    band.vectors.resize(n * count);
-    double* Y = basis_.Block(basis_.num_blocks());
-    double* AY = basis_.Block(basis_.num_blocks() + 1);
-    for (int begin = 0; begin < count; begin += kBlock) {
+    band.vectors.resize(static_cast<size_t>(matrix_.n) * count);
+    std::vector<double> residuals(count, 0.0);
+    const int blocks = (count + kBlock - 1) / kBlock;
+    for (int b = 0; b < blocks; b += kTogether) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
-      const int width = std::min(kBlock, count - begin);
-      RowMajorMatrix block =
-          RowMajorMatrix::Zero(coefficients.rows(), kBlock);
-      block.leftCols(width) = coefficients.middleCols(begin, width);
-      basis_.Combine(block, Y);
-      for (size_t i = 0; i < n; ++i)
-        for (int c = 0; c < width; ++c)
-          band.vectors[i * count + begin + c] =
-              static_cast<float>(Y[i * kBlock + c]);
-      MARROW_RETURN_IF_ERROR(cancel_.Check());
-      matrix_.Multiply(Y, AY);
-      MeasureResiduals(Y, AY, begin, width, band);
+      const int together = std::min(kTogether, blocks - b);
+      double* Y[kTogether];
+      double* scratch[kTogether];
+      for (int i = 0; i < together; ++i) {
+        Y[i] = basis_.Block(basis_.num_blocks() + 2 * i);
+        scratch[i] = basis_.Block(basis_.num_blocks() + 2 * i + 1);
+      }
+      team_.For(together, [&](int i) {
+        WriteBlock(coefficients, (b + i) * kBlock, Y[i], scratch[i], band,
+                   residuals);
+      });
     }
+    band.residual = *std::max_element(residuals.begin(), residuals.end());
     if (band.residual <= kResidualSlack * request_.tolerance)
       return absl::OkStatus();
     return absl::InternalError(absl::StrCat("a pair about ", factor_.shift(),
@@ -254,19 +295,30 @@ class BandFinder {
                                             band.residual));
   }
 
-  void MeasureResiduals(const double* Y, const double* AY, int begin, int width,
-                        Band& band) const {
-    std::vector<double> sums(kBlock, 0.0);
-    for (int i = 0; i < matrix_.n; ++i)
-      for (int c = 0; c < width; ++c) {
-        const size_t at = static_cast<size_t>(i) * kBlock + c;
-        const double r = AY[at] - band.values[begin + c] * Y[at];
-        sums[c] += r * r;
-      }
+  // Vectors `begin` and after of the band, and their residuals.
+  void WriteBlock(const RowMajorMatrix& coefficients, int begin, double* Y,
+                  double* residual, Band& band,
+                  std::vector<double>& residuals) const {
+    const size_t count = band.values.size();
+    const int width = std::min<int>(kBlock, count - begin);
+    RowMajorMatrix block = RowMajorMatrix::Zero(coefficients.rows(), kBlock);
+    block.leftCols(width) = coefficients.middleCols(begin, width);
+    basis_.Combine(block, Y);
+    std::array<double, kBlock> lambda{}, sums{};
+    std::copy_n(band.values.begin() + begin, width, lambda.begin());
+    for (int i = 0; i < matrix_.n; ++i) {
+      const double* row = Y + static_cast<size_t>(i) * kBlock;
+      for (int c = 0; c < width; ++c)
+        band.vectors[i * count + begin + c] = static_cast<float>(row[c]);
+      for (int c = 0; c < kBlock; ++c)
+        residual[static_cast<size_t>(i) * kBlock + c] = lambda[c] * row[c];
+    }
+    matrix_.SubtractProduct(Y, residual);
+    for (size_t i = 0; i < static_cast<size_t>(matrix_.n); ++i)
+      for (int c = 0; c < kBlock; ++c)
+        sums[c] += residual[i * kBlock + c] * residual[i * kBlock + c];
     for (int c = 0; c < width; ++c)
-      band.residual =
-          std::max(band.residual, std::sqrt(sums[c]) /
-                                      std::max(band.values[begin + c], floor_));
+      residuals[begin + c] = std::sqrt(sums[c]) / std::max(lambda[c], floor_);
   }
 
   // The estimate leaves out rounding and the other pairs' share.
@@ -275,13 +327,16 @@ class BandFinder {
   const SupernodalStructure& matrix_;
   const SupernodalFactor& factor_;
   const BandRequest& request_;
+  Team& team_;
   const CancelToken& cancel_;
   LanczosBasis basis_;
   uint64_t seed_;
-  Eigen::MatrixXd T_;
-  Eigen::MatrixXd R_;
+  int num_solved_ = 0;  // blocks of the basis
+  // What the operator makes of those, in terms of the basis.
+  Eigen::MatrixXd H_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz_;
-  Eigen::MatrixXd tail_;  // R times the last block of every Ritz vector
+  // Of every Ritz vector, what the operator makes of it outside of them.
+  Eigen::MatrixXd tail_;
   Side above_, below_;
   double floor_ = 0;
   int num_above_ = 0, num_below_ = 0;
@@ -292,10 +347,11 @@ class BandFinder {
 absl::StatusOr<Band> FindBand(const SupernodalStructure& matrix,
                               const SupernodalFactor& factor,
                               const BandRequest& request,
-                              LanczosWorkspace& workspace,
+                              LanczosWorkspace& workspace, Team& team,
                               const CancelToken& cancel,
                               const StepCallback& on_step) {
-  return BandFinder(matrix, factor, request, workspace, cancel).Find(on_step);
+  return BandFinder(matrix, factor, request, workspace, team, cancel)
+      .Find(on_step);
 }
 
 }  // namespace marrow

@@ -10,7 +10,9 @@
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 #include "core/spectrum/aligned_buffer.h"
+#include "core/spectrum/coarse_start.h"
 #include "core/spectrum/supernodal_factor.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 
@@ -26,6 +28,10 @@ struct BandRequest {
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.
   double tolerance = 0;
+  // Where there is one: the numbers of the vectors of it to begin with.
+  const CoarseStart* start = nullptr;
+  int start_first = 0;
+  int start_count = 0;
   // Steps beyond those that seem enough, and another start: for a band that
   // was found to lack a pair.
   int extra_steps = 0;
@@ -54,14 +60,14 @@ struct LanczosWorkspace {
 // Called after every step.
 using StepCallback = std::function<void()>;
 
-// Finds at least the pairs asked for, more where a cluster wants it. A function
-// of its arguments alone; O(n) memory a vector of the basis, which has two to
+// Finds at least the pairs asked for, more where a cluster wants it. The same
+// bytes whatever the team; O(n) memory a vector of the basis, which has two to
 // three times as many as there are pairs. Errors: CANCELLED; INTERNAL where the
 // pairs do not converge. May throw std::bad_alloc.
 absl::StatusOr<Band> FindBand(const SupernodalStructure& matrix,
                               const SupernodalFactor& factor,
                               const BandRequest& request,
-                              LanczosWorkspace& workspace,
+                              LanczosWorkspace& workspace, Team& team,
                               const CancelToken& cancel,
                               const StepCallback& on_step);
 

@@ -185,29 +185,34 @@ void SupernodalFactor::PushUpdate(const Supernode& node, const double* front) {
   stack_top_ += node.num_rows * stride;
 }
 
-void SupernodalFactor::Solve(double* X) const {
-  for (const Supernode& node : structure_.supernodes) {
-    const double* panel = panels_.data() + node.panel;
-    double* own = X + static_cast<size_t>(node.first) * kBlock;
-    const int stride = node.PanelStride();
-    kernels_.lower_solve(node.width, panel, stride, own);
-    kernels_.scatter_subtract(node.num_rows, node.width,
-                              {panel + node.OwnWidth(), 1, stride}, own, X,
-                              structure_.rows.data() + node.rows);
-  }
-  for (size_t k = structure_.supernodes.size(); k-- > 0;) {
-    const Supernode& node = structure_.supernodes[k];
-    const double* panel = panels_.data() + node.panel;
-    double* own = X + static_cast<size_t>(node.first) * kBlock;
-    const int stride = node.PanelStride();
-    for (int i = 0; i < node.width; ++i)
-      for (int c = 0; c < kBlock; ++c)
-        own[i * kBlock + c] *= inverse_pivots_[node.first + i];
-    kernels_.gather_subtract(node.width, node.num_rows,
-                             {panel + node.OwnWidth(), stride, 1}, X,
-                             structure_.rows.data() + node.rows, own);
-    kernels_.upper_solve(node.width, panel, stride, own);
-  }
+void SupernodalFactor::SolveDown(const Supernode& node, double* X) const {
+  const double* panel = panels_.data() + node.panel;
+  double* own = X + static_cast<size_t>(node.first) * kBlock;
+  const int stride = node.PanelStride();
+  kernels_.lower_solve(node.width, panel, stride, own);
+  kernels_.scatter_subtract(node.num_rows, node.width,
+                            {panel + node.OwnWidth(), 1, stride}, own, X,
+                            structure_.rows.data() + node.rows);
+}
+
+void SupernodalFactor::SolveUp(const Supernode& node, double* X) const {
+  const double* panel = panels_.data() + node.panel;
+  double* own = X + static_cast<size_t>(node.first) * kBlock;
+  const int stride = node.PanelStride();
+  for (int i = 0; i < node.width; ++i)
+    for (int c = 0; c < kBlock; ++c)
+      own[i * kBlock + c] *= inverse_pivots_[node.first + i];
+  kernels_.gather_subtract(node.width, node.num_rows,
+                           {panel + node.OwnWidth(), stride, 1}, X,
+                           structure_.rows.data() + node.rows, own);
+  kernels_.upper_solve(node.width, panel, stride, own);
+}
+
+void SupernodalFactor::Solve(std::span<double* const> blocks) const {
+  for (const Supernode& node : structure_.supernodes)
+    for (double* X : blocks) SolveDown(node, X);
+  for (size_t k = structure_.supernodes.size(); k-- > 0;)
+    for (double* X : blocks) SolveUp(structure_.supernodes[k], X);
 }
 
 }  // namespace marrow

@@ -358,20 +358,17 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
   return s;
 }
 
-void SupernodalStructure::Multiply(const double* X, double* Y) const {
-  std::fill_n(Y, static_cast<size_t>(n) * kBlock, 0.0);
+void SupernodalStructure::SubtractProduct(const double* X, double* Y) const {
+  const DenseKernels& kernels = Kernels();
   for (int i = 0; i < n; ++i) {
-    const double* x = X + static_cast<size_t>(i) * kBlock;
-    double* y = Y + static_cast<size_t>(i) * kBlock;
-    for (size_t e = row_start[i]; e < row_start[i + 1]; ++e) {
-      const int j = columns[e];
-      const double value = values[e];
-      const double* other_x = X + static_cast<size_t>(j) * kBlock;
-      for (int c = 0; c < kBlock; ++c) y[c] += value * other_x[c];
-      if (j == i) continue;
-      double* other_y = Y + static_cast<size_t>(j) * kBlock;
-      for (int c = 0; c < kBlock; ++c) other_y[c] += value * x[c];
-    }
+    const size_t begin = row_start[i];
+    const int count = static_cast<int>(row_start[i + 1] - begin);
+    const size_t at = static_cast<size_t>(i) * kBlock;
+    kernels.gather_subtract(1, count, {values.data() + begin, 0, 1}, X,
+                            columns.data() + begin, Y + at);
+    // The lower triangle; the diagonal, which comes first, is done.
+    kernels.scatter_subtract(count - 1, 1, {values.data() + begin + 1, 1, 0},
+                             X + at, Y, columns.data() + begin + 1);
   }
 }
 

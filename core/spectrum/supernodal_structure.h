@@ -53,8 +53,8 @@ struct SupernodalStructure {
   size_t stack_doubles = 0;
   size_t largest_front_rows = 0;
 
-  // Y = A X for one block of vectors.
-  void Multiply(const double* X, double* Y) const;
+  // Y -= A X for one block of vectors.
+  void SubtractProduct(const double* X, double* Y) const;
 };
 
 // `matrix` is symmetric with a full pattern and diagonal; `positions` has a row
