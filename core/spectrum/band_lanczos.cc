@@ -1,19 +1,19 @@
 // Block Lanczos with full orthogonalisation for (A - shift I)^-1, whose largest
 // eigenvalues theta = 1 / (lambda - shift) are the nearest lambda.
 //
-// The process begins with the solutions of blocks of coarse or random vectors,
-// not with those themselves: they would hold little of what is wanted. All that
-// the operator makes of the basis is kept in H, not its band alone, so that a
-// block may hold new directions where the process found an invariant subspace;
-// that is how a cluster with more members than a block has columns comes out
-// whole.
+// The process begins with the solutions of a random block, not with that block:
+// it would hold little of what is wanted. The projected matrix T is kept whole,
+// not its band alone, so that a block may hold new directions where the process
+// found an invariant subspace; that is how a cluster with more members than a
+// block has columns comes out whole.
 //
-// V are the vectors that the operator was applied to, Q those of the basis that
-// wait for it: (A - shift I)^-1 V = V T + Q R, H = [T; R]. With T s = theta s
-// the Ritz vector V s has a residual under A that may be huge, for what is rough
-// in Q. The vector (A - shift I)^-1 V s / theta = V s + Q R s / theta has
-// |R s| / theta^2, free of it (Ericsson and Ruhe 1980). It is taken for the
-// eigenvector.
+// With (A - shift I)^-1 V = V T + Q R and T s = theta s the Ritz vector V s has
+// a residual under A that may be huge, for what is rough in Q. The vector
+// (A - shift I)^-1 V s / theta = V s + Q R s / theta has |R s| / theta^2, free
+// of it (Ericsson and Ruhe 1980). It is taken for the eigenvector.
+//
+// Starting from a coarse problem's vectors was tried and was slower: a Krylov
+// space is better at parting neighbours than at being told about them.
 #include "core/spectrum/band_lanczos.h"
 
 #include <Eigen/Cholesky>
@@ -42,7 +42,7 @@ constexpr double kKnownShare = 0.02;
 constexpr double kResolvedShare = 0.05;
 // Looking for convergence in a basis of fewer vectors a pair is in vain.
 constexpr double kFirstLook = 1.5;
-// Blocks solved for at once.
+// Blocks written at once.
 constexpr int kTogether = 2;
 
 // Ritz pairs on one side of the shift, the nearest first.
@@ -69,15 +69,13 @@ class BandFinder {
     MARROW_RETURN_IF_ERROR(Start());
     const int wanted = request_.below + request_.above;
     const int most = std::min(matrix_.n - kBlock, 6 * wanted + 20 * kBlock);
-    const int first_look = std::min(
-        std::max(static_cast<int>(kFirstLook * wanted) / kBlock,
-                 basis_.num_blocks()),
-        most / kBlock - 1);
+    const int first_look =
+        std::min(static_cast<int>(kFirstLook * wanted), most - kBlock);
     int extra = request_.extra_steps;
     while (basis_.dimension() < most) {
       MARROW_RETURN_IF_ERROR(Step());
       on_step();
-      if (num_solved_ < first_look || !Converged()) continue;
+      if (T_.rows() < first_look || !Converged()) continue;
       if (extra-- <= 0) return Extract();
     }
     return absl::InternalError(
@@ -89,74 +87,43 @@ class BandFinder {
  private:
   void FillAnew(double* Z) {
     basis_.FillRandomly(Z, ++seed_);
-    double* const blocks[] = {Z};
-    factor_.Solve(blocks);
+    factor_.Solve(Z, team_);
   }
 
   absl::Status Append(LanczosBasis::Growth& growth) {
     return basis_.Append([this](double* Z) { FillAnew(Z); }, cancel_, growth);
   }
 
-  // The solutions of as many blocks as the start has, at least one.
+  // The solutions of a random block.
   absl::Status Start() {
-    const int blocks =
-        std::max(1, (request_.start_count + kBlock - 1) / kBlock);
-    for (int b = 0; b < blocks; b += kTogether) {
-      const int count = std::min(kTogether, blocks - b);
-      for (int i = 0; i < count; ++i) {
-        double* X = basis_.Block(basis_.num_blocks() + i);
-        basis_.FillRandomly(X, ++seed_);
-        if (request_.start != nullptr)
-          request_.start->Fill(request_.start_first + (b + i) * kBlock, X);
-      }
-      LanczosBasis::Growth unused;
-      MARROW_RETURN_IF_ERROR(SolveNew(count));
-      for (int i = 0; i < count; ++i) MARROW_RETURN_IF_ERROR(Append(unused));
-    }
-    return absl::OkStatus();
-  }
-
-  absl::Status SolveNew(int count) {
+    double* X = basis_.Block(0);
+    basis_.FillRandomly(X, ++seed_);
     MARROW_RETURN_IF_ERROR(cancel_.Check());
-    double* blocks[kTogether];
-    for (int i = 0; i < count; ++i)
-      blocks[i] = basis_.Block(basis_.num_blocks() + i);
-    if (team_.threads() == 1) {
-      factor_.Solve({blocks, static_cast<size_t>(count)});
-    } else {
-      team_.For(count, [&](int i) { factor_.Solve({blocks + i, 1}); });
-    }
-    return cancel_.Check();
+    factor_.Solve(X, team_);
+    LanczosBasis::Growth unused;
+    return Append(unused);
   }
 
-  // Takes the next blocks of the basis through the operator.
+  // Takes the last block of the basis through the operator.
   absl::Status Step() {
-    const int count = std::min(kTogether, basis_.num_blocks() - num_solved_);
-    for (int i = 0; i < count; ++i)
-      std::copy_n(basis_.Block(num_solved_ + i),
-                  static_cast<size_t>(matrix_.n) * kBlock,
-                  basis_.Block(basis_.num_blocks() + i));
-    MARROW_RETURN_IF_ERROR(SolveNew(count));
-    for (int i = 0; i < count; ++i) {
-      LanczosBasis::Growth growth;
-      MARROW_RETURN_IF_ERROR(Append(growth));
-      const Eigen::Index columns = H_.cols();
-      H_.conservativeResizeLike(
-          Eigen::MatrixXd::Zero(basis_.dimension(), columns + kBlock));
-      H_.block(0, columns, basis_.dimension() - kBlock, kBlock) =
-          growth.projection;
-      H_.bottomRightCorner(kBlock, kBlock) = growth.remainder;
-      ++num_solved_;
-    }
+    MARROW_RETURN_IF_ERROR(cancel_.Check());
+    double* W = basis_.Block(basis_.num_blocks());
+    basis_.Copy(basis_.num_blocks() - 1, W);
+    factor_.Solve(W, team_);
+    LanczosBasis::Growth growth;
+    MARROW_RETURN_IF_ERROR(Append(growth));
+    const Eigen::Index old = T_.rows();
+    T_.conservativeResize(old + kBlock, old + kBlock);
+    T_.rightCols(kBlock) = growth.projection;
+    T_.bottomRows(kBlock) = growth.projection.transpose();
+    R_ = growth.remainder;
     return absl::OkStatus();
   }
 
   // Solves the projected problem and picks the pairs.
   bool Converged() {
-    const Eigen::Index m = H_.cols();
-    const Eigen::MatrixXd T = H_.topRows(m);
-    ritz_.compute(0.5 * (T + T.transpose()));
-    tail_ = H_.bottomRows(H_.rows() - m) * ritz_.eigenvectors();
+    ritz_.compute(0.5 * (T_ + T_.transpose()));
+    tail_ = R_ * ritz_.eigenvectors().bottomRows(kBlock);
     above_ = MakeSide(true);
     below_ = MakeSide(false);
     if (below_.value.empty() && above_.value.empty()) return false;
@@ -253,11 +220,11 @@ class BandFinder {
     return count < static_cast<int>(side.value.size());
   }
 
-  // Of the vectors in the basis, those not yet solved for included;
-  // orthonormalised, which is a matter of their tails alone.
+  // Of the vectors in the basis, the last block included; orthonormalised,
+  // which is a matter of their tails alone.
   RowMajorMatrix Coefficients(const std::vector<int>& chosen) const {
     const int count = static_cast<int>(chosen.size());
-    Eigen::MatrixXd coefficients(H_.rows(), count);
+    Eigen::MatrixXd coefficients(basis_.dimension(), count);
     for (int c = 0; c < count; ++c) {
       const double theta = ritz_.eigenvalues()[chosen[c]];
       coefficients.col(c) << ritz_.eigenvectors().col(chosen[c]),
@@ -331,12 +298,10 @@ class BandFinder {
   const CancelToken& cancel_;
   LanczosBasis basis_;
   uint64_t seed_;
-  int num_solved_ = 0;  // blocks of the basis
-  // What the operator makes of those, in terms of the basis.
-  Eigen::MatrixXd H_;
+  Eigen::MatrixXd T_;
+  Eigen::MatrixXd R_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz_;
-  // Of every Ritz vector, what the operator makes of it outside of them.
-  Eigen::MatrixXd tail_;
+  Eigen::MatrixXd tail_;  // R times the last block of every Ritz vector
   Side above_, below_;
   double floor_ = 0;
   int num_above_ = 0, num_below_ = 0;

@@ -10,7 +10,6 @@
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 #include "core/spectrum/aligned_buffer.h"
-#include "core/spectrum/coarse_start.h"
 #include "core/spectrum/supernodal_factor.h"
 #include "core/spectrum/team.h"
 
@@ -28,10 +27,6 @@ struct BandRequest {
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.
   double tolerance = 0;
-  // Where there is one: the numbers of the vectors of it to begin with.
-  const CoarseStart* start = nullptr;
-  int start_first = 0;
-  int start_count = 0;
   // Steps beyond those that seem enough, and another start: for a band that
   // was found to lack a pair.
   int extra_steps = 0;

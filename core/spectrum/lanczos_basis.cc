@@ -62,6 +62,15 @@ void LanczosBasis::FillRandomly(double* W, uint64_t seed) const {
   });
 }
 
+void LanczosBasis::Copy(int index, double* W) const {
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      std::memcpy(W + at, blocks_[index].data() + at,
+                  sizeof(double) * rows * kBlock);
+    });
+  });
+}
+
 RowMajorMatrix LanczosBasis::Project(int first, const double* W) const {
   std::vector<RowMajorMatrix> sums(
       kParts, RowMajorMatrix::Zero(dimension(), kBlock));

@@ -31,6 +31,7 @@ class LanczosBasis {
   double* Block(int index);
 
   void FillRandomly(double* W, uint64_t seed) const;
+  void Copy(int index, double* W) const;
 
   // What was W in terms of the basis: W = V * projection + Q * remainder, Q the
   // new block.
@@ -38,10 +39,9 @@ class LanczosBasis {
     RowMajorMatrix projection;  // dimension() before x kBlock
     RowMajorMatrix remainder;   // kBlock x kBlock
   };
-  // Makes of W = Block(num_blocks()) the next block of the basis; the block
-  // after it is left alone. Directions that W does not have are filled by
-  // `fill(Z)`, which writes a block of vectors to be used instead. Errors:
-  // CANCELLED.
+  // Makes of W = Block(num_blocks()) the next block of the basis. Directions
+  // that W does not have are filled by `fill(Z)`, which writes a block of
+  // vectors to be used instead. Errors: CANCELLED.
   template <typename Fill>
   absl::Status Append(const Fill& fill, const CancelToken& cancel,
                       Growth& growth);
@@ -108,7 +108,7 @@ absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
     if (q.complete || pass > 1) continue;
     passes = 4;
     first = 0;
-    double* Z = Block(num_blocks_ + 2);
+    double* Z = Block(num_blocks_ + 1);
     fill(Z);
     ReplaceColumns(q.missing, Z, W);
   }

@@ -29,11 +29,11 @@ constexpr double kNudge = 1e-7;
 
 }  // namespace
 
-absl::Status FactoriseNear(double shift, SupernodalFactor& factor,
+absl::Status FactoriseNear(double shift, SupernodalFactor& factor, Team& team,
                            const CancelToken& cancel) {
   absl::Status status;
   for (int i = 0; i < kMostNudges; ++i) {
-    status = factor.Compute(shift * (1 + i * kNudge), cancel);
+    status = factor.Compute(shift * (1 + i * kNudge), team, cancel);
     if (status.code() != absl::StatusCode::kFailedPrecondition) return status;
   }
   return absl::InternalError(
@@ -52,7 +52,7 @@ double ShiftGrid::Guess() const {
 // below them and `cluster_end` is the count above them, else 0. Where few pairs
 // are far below very many, the shift is left amid the two and `dense_above`:
 // seen from among the many, the few are lost.
-absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
+absl::Status ShiftGrid::Settle(SupernodalFactor& factor, Team& team,
                                const CancelToken& cancel, int& cluster_end,
                                bool& dense_above) {
   cluster_end = 0;
@@ -60,7 +60,7 @@ absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
   double low = last_shift_, high = kInfinity, shift = Guess();
   int high_count = 0, low_count = covered_;
   for (int i = 0; i < kMostTries; ++i) {
-    MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, cancel));
+    MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, team, cancel));
     const int found = factor.negative_pivots() - covered_;
     const bool too_many = found > kTooMany * wanted_;
     if (!too_many && (found >= kTooFew * wanted_ ||
@@ -76,13 +76,13 @@ absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
     if (low_count > covered_ && high - low < kStepWidth * (low - last_shift_)) {
       dense_above = true;
       MARROW_RETURN_IF_ERROR(
-          FactoriseNear(0.5 * (last_shift_ + low), factor, cancel));
+          FactoriseNear(0.5 * (last_shift_ + low), factor, team, cancel));
       if (factor.negative_pivots() == low_count) return absl::OkStatus();
-      return FactoriseNear(low, factor, cancel);
+      return FactoriseNear(low, factor, team, cancel);
     }
     if (high - low < kClusterWidth * high) {
       cluster_end = high_count;
-      return too_many ? FactoriseNear(low, factor, cancel) : absl::OkStatus();
+      return too_many ? FactoriseNear(low, factor, team, cancel) : absl::OkStatus();
     }
     shift = std::isinf(high) ? last_shift_ + 2 * (shift - last_shift_)
                              : 0.5 * (low + high);
@@ -90,11 +90,11 @@ absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
   return absl::InternalError("no place for a shift was found");
 }
 
-absl::Status ShiftGrid::Plan(SupernodalFactor& factor,
+absl::Status ShiftGrid::Plan(SupernodalFactor& factor, Team& team,
                              const CancelToken& cancel, PlannedBand& band) {
   int cluster_end;
   bool dense_above;
-  MARROW_RETURN_IF_ERROR(Settle(factor, cancel, cluster_end, dense_above));
+  MARROW_RETURN_IF_ERROR(Settle(factor, team, cancel, cluster_end, dense_above));
   band = PlannedBand();
   band.shift = factor.shift();
   band.below_shift = factor.negative_pivots();

@@ -34,12 +34,12 @@ class ShiftGrid {
 
   // The next band; `factor` is left factorised at its shift. Errors: CANCELLED;
   // INTERNAL where no shift can be found. REQUIRES: !done().
-  absl::Status Plan(SupernodalFactor& factor, const CancelToken& cancel,
+  absl::Status Plan(SupernodalFactor& factor, Team& team, const CancelToken& cancel,
                     PlannedBand& band);
 
  private:
   double Guess() const;
-  absl::Status Settle(SupernodalFactor& factor, const CancelToken& cancel,
+  absl::Status Settle(SupernodalFactor& factor, Team& team, const CancelToken& cancel,
                       int& cluster_end,
                       bool& dense_above);
 
@@ -53,7 +53,7 @@ class ShiftGrid {
 };
 
 // Factorises at `shift`, or a little above it where that is an eigenvalue.
-absl::Status FactoriseNear(double shift, SupernodalFactor& factor,
+absl::Status FactoriseNear(double shift, SupernodalFactor& factor, Team& team,
                            const CancelToken& cancel);
 
 }  // namespace marrow

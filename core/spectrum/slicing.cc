@@ -15,7 +15,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <new>
 #include <thread>
@@ -34,16 +33,6 @@ constexpr int kMostRepairs = 3;
 constexpr auto kReportEvery = std::chrono::milliseconds(20);
 // Steps of a usual band, for progress alone.
 constexpr double kUsualSteps = 12;
-// Vectors beyond the wanted ones that a band begins with, on each side.
-constexpr double kGuardShare = 0.2;
-constexpr int kLeastGuard = 8;
-// The coarse problem: cells a pair, and its pairs beyond the wanted.
-constexpr int kCellsPerPair = 30;
-constexpr int kLeastCells = 2000;
-constexpr double kCoarseTolerance = 1e-3;
-// From this size on all threads work on one band: two would take too much
-// memory.
-constexpr int kOneBandRows = 300'000;
 // What the analysis is of the whole.
 constexpr double kAnalysisShare = 0.1;
 
@@ -60,15 +49,13 @@ struct FoundBand {
 
 class Slicer {
  public:
-  // `start` may be null.
-  Slicer(const SupernodalStructure& matrix, int pairs, const CoarseStart* start,
+  Slicer(const SupernodalStructure& matrix, int pairs,
          const SlicingOptions& options, const CancelToken& cancel)
       : matrix_(matrix),
-        start_(start),
         pairs_(pairs),
         options_(options),
         cancel_(cancel),
-        workers_(matrix.n < kOneBandRows ? options.threads : 1),
+        workers_(matrix.branches.empty() ? options.threads : 1),
         grid_(pairs, options.band, options.tolerance) {}
 
   absl::Status FindBands(const ShareCallback& progress) {
@@ -123,11 +110,10 @@ class Slicer {
       found = bands_.back().get();
       // Each shift depends on the count at the one before, so this is done by
       // one thread at a time.
-      status_.Update(grid_.Plan(factor, cancel_, found->plan));
+      status_.Update(grid_.Plan(factor, team, cancel_, found->plan));
       if (!status_.ok()) return false;
     }
-    BandRequest& request = found->plan.request;
-    SetStart(found->plan);
+    const BandRequest& request = found->plan.request;
     const double step = (request.below + request.above) / kUsualSteps;
     absl::StatusOr<Band> band =
         FindBand(matrix_, factor, request, workspace, team, cancel_, [&] {
@@ -141,23 +127,6 @@ class Slicer {
     found->band = *std::move(band);
     return true;
   }
-
-  // The wanted vectors and some on either side: what the coarse vectors mix is
-  // then among the start vectors.
-  void SetStart(PlannedBand& plan) const {
-    if (start_ == nullptr) return;
-    BandRequest& request = plan.request;
-    const int wanted = request.below + request.above;
-    const int first = plan.below_shift - request.below;
-    const int guard = std::max(kLeastGuard, static_cast<int>(
-                                                kGuardShare * wanted));
-    request.start = start_;
-    request.start_first = std::max(0, first - guard);
-    request.start_count =
-        PadTo(first + wanted + guard - request.start_first, kBlock);
-  }
-
-  static int PadTo(int n, int step) { return (n + step - 1) / step * step; }
 
   void Fail(absl::Status status) {
     absl::MutexLock lock(&mu_);
@@ -202,7 +171,8 @@ class Slicer {
                                 ? 0.5 * (from + last.band.next_above)
                                 : 1.01 * from;
       SupernodalFactor factor(matrix_);
-      MARROW_RETURN_IF_ERROR(FactoriseNear(beyond, factor, cancel_));
+      Team team(options_.threads);
+      MARROW_RETURN_IF_ERROR(FactoriseNear(beyond, factor, team, cancel_));
       if (factor.negative_pivots() != last.end()) suspect.back() = true;
     }
     return absl::OkStatus();
@@ -222,7 +192,7 @@ class Slicer {
     SupernodalFactor factor(matrix_);
     LanczosWorkspace workspace;
     Team team(options_.threads);
-    MARROW_RETURN_IF_ERROR(factor.Compute(found.plan.shift, cancel_));
+    MARROW_RETURN_IF_ERROR(factor.Compute(found.plan.shift, team, cancel_));
     BandRequest request = found.plan.request;
     request.extra_steps = attempt;
     MARROW_ASSIGN_OR_RETURN(
@@ -250,7 +220,6 @@ class Slicer {
   }
 
   const SupernodalStructure& matrix_;
-  const CoarseStart* const start_;
   const int pairs_;
   const SlicingOptions& options_;
   const CancelToken& cancel_;
@@ -264,55 +233,10 @@ class Slicer {
   double reported_ = 0;
 };
 
-// The lowest vectors of a problem with a few cells a pair.
-absl::StatusOr<CoarseStart> SolveCoarsely(
-    const Eigen::SparseMatrix<double>& matrix,
-    const Eigen::VectorXd& inverse_sqrt_mass, const double* positions,
-    int pairs, const SlicingOptions& options, const CancelToken& cancel) {
-  const int wanted = static_cast<int>((1 + kGuardShare) * pairs) + 2 * kBlock;
-  const int cells = std::max(kLeastCells, kCellsPerPair * wanted);
-  CoarseProblem coarse =
-      MakeCoarseProblem(matrix, inverse_sqrt_mass, positions, cells);
-  SlicingOptions loose = options;
-  loose.tolerance = kCoarseTolerance;
-  loose.least_coarsened = std::numeric_limits<int>::max();
-  MARROW_ASSIGN_OR_RETURN(
-      const SlicedSpectrum spectrum,
-      SliceSpectrum(coarse.matrix, inverse_sqrt_mass, coarse.positions.data(),
-                    wanted, loose, cancel, [](double) {}));
-  CoarseStart start;
-  start.cell = std::move(coarse.cell);
-  start.count = wanted;
-  start.values.resize(coarse.sqrt_mass.size() * wanted);
-  int column = 0;
-  for (const SlicedSpectrum::Part& part : spectrum.parts)
-    for (int k = part.first; k < part.end; ++k, ++column)
-      for (size_t i = 0; i < spectrum.order.size(); ++i) {
-        const int cell = spectrum.order[i];
-        start.values[static_cast<size_t>(cell) * wanted + column] =
-            static_cast<float>(
-                part.band.vectors[i * part.band.values.size() + k] /
-                coarse.sqrt_mass[cell]);
-      }
-  return start;
-}
-
-void Reorder(const std::vector<int>& order,
-             const Eigen::VectorXd& inverse_sqrt_mass, CoarseStart& start) {
-  std::vector<int> cell(order.size());
-  start.sqrt_mass.resize(order.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    cell[i] = start.cell[order[i]];
-    start.sqrt_mass[i] = 1 / inverse_sqrt_mass[order[i]];
-  }
-  start.cell = std::move(cell);
-}
-
 }  // namespace
 
 absl::StatusOr<SlicedSpectrum> SliceSpectrum(
-    const Eigen::SparseMatrix<double>& matrix,
-    const Eigen::VectorXd& inverse_sqrt_mass, const double* positions,
+    const Eigen::SparseMatrix<double>& matrix, const double* positions,
     int pairs, const SlicingOptions& options, const CancelToken& cancel,
     const ShareCallback& progress) {
   try {
@@ -320,18 +244,8 @@ absl::StatusOr<SlicedSpectrum> SliceSpectrum(
         const SupernodalStructure structure,
         AnalyseStructure(matrix, positions, options.max_factor_bytes,
                          options.threads, cancel));
-    CoarseStart start;
-    const bool coarsened = matrix.rows() >= options.least_coarsened &&
-                           matrix.rows() >= 2 * kCellsPerPair * pairs;
-    if (coarsened) {
-      MARROW_ASSIGN_OR_RETURN(
-          start, SolveCoarsely(matrix, inverse_sqrt_mass, positions, pairs,
-                               options, cancel));
-      Reorder(structure.order, inverse_sqrt_mass, start);
-    }
     progress(kAnalysisShare);
-    Slicer slicer(structure, pairs, coarsened ? &start : nullptr, options,
-                  cancel);
+    Slicer slicer(structure, pairs, options, cancel);
     MARROW_RETURN_IF_ERROR(slicer.FindBands([&](double share) {
       progress(kAnalysisShare + (1 - kAnalysisShare) * share);
     }));

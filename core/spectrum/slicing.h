@@ -19,9 +19,6 @@ struct SlicingOptions {
   double tolerance = 1e-6;
   // Pairs of a usual band.
   int band = 40;
-  // Matrices of at least this many rows begin with the vectors of a coarse
-  // problem.
-  int least_coarsened = 12'000;
   // What one factor may take; there is one a thread.
   size_t max_factor_bytes = size_t{1} << 30;
 };
@@ -44,15 +41,14 @@ struct SlicedSpectrum {
 using ShareCallback = std::function<void(double)>;
 
 // The `pairs` lowest pairs of `matrix`, which is symmetric and positive
-// semi-definite with a full pattern and diagonal, D L D with the diagonal D =
-// `inverse_sqrt_mass`; `positions` has a row of three an unknown. That none is missing or twice is certified by the inertia
+// semi-definite with a full pattern and diagonal; `positions` has a row of
+// three an unknown. That none is missing or twice is certified by the inertia
 // at every shift and beyond the last pair. The same bytes at any number of
 // threads. Errors: CANCELLED; RESOURCE_EXHAUSTED where a factor or the vectors
 // do not fit; INTERNAL where a certificate fails for good. REQUIRES: pairs <
 // matrix.rows(), and that is not tiny (some hundred).
 absl::StatusOr<SlicedSpectrum> SliceSpectrum(
-    const Eigen::SparseMatrix<double>& matrix,
-    const Eigen::VectorXd& inverse_sqrt_mass, const double* positions,
+    const Eigen::SparseMatrix<double>& matrix, const double* positions,
     int pairs, const SlicingOptions& options, const CancelToken& cancel,
     const ShareCallback& progress);
 

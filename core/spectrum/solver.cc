@@ -113,7 +113,7 @@ absl::Status SolveSparse(const TriangleMesh& mesh,
   options.threads = static_cast<int>(
       std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
   absl::StatusOr<SlicedSpectrum> sliced =
-      SliceSpectrum(problem.A, problem.inverse_sqrt_mass, mesh.positions.data(), count, options, cancel,
+      SliceSpectrum(problem.A, mesh.positions.data(), count, options, cancel,
                     report);
   if (sliced.ok()) {
     Assign(*std::move(sliced), problem.inverse_sqrt_mass, count, pairs);
