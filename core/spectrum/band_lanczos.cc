@@ -41,9 +41,17 @@ constexpr double kKnownShare = 0.02;
 // are not told apart.
 constexpr double kResolvedShare = 0.05;
 // Looking for convergence in a basis of fewer vectors a pair is in vain.
-constexpr double kFirstLook = 1.5;
-// Blocks written at once.
-constexpr int kTogether = 2;
+constexpr double kFirstLook = 2;
+// Residuals fall by less than so many decades a step, or as fast as they last
+// did; a look costs as much as a step, so steps that cannot be the last go
+// unseen.
+constexpr double kUsualRate = 1;
+constexpr double kTrustedShare = 0.8;
+constexpr double kMostExcess = 6;
+// Blocks written at once, so that the basis is read once for them.
+constexpr int kTogether = 4;
+// The estimate of a residual leaves out rounding and the other pairs' share.
+constexpr double kEstimateShare = 0.5;
 
 // Ritz pairs on one side of the shift, the nearest first.
 struct Side {
@@ -68,20 +76,24 @@ class BandFinder {
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
     MARROW_RETURN_IF_ERROR(Start());
     const int wanted = request_.below + request_.above;
-    const int most = std::min(matrix_.n - kBlock, 6 * wanted + 20 * kBlock);
+    const int most = std::min(matrix_.n - kBlock, 8 * wanted + 60 * kBlock);
     const int first_look =
         std::min(static_cast<int>(kFirstLook * wanted), most - kBlock);
     int extra = request_.extra_steps;
+    int unseen = 0;
     while (basis_.dimension() < most) {
       MARROW_RETURN_IF_ERROR(Step());
       on_step();
-      if (T_.rows() < first_look || !Converged()) continue;
-      if (extra-- <= 0) return Extract();
+      if (T_.rows() < first_look) continue;
+      if (unseen-- > 0 && basis_.dimension() < most) continue;
+      if (Converged()) {
+        if (extra-- <= 0) return Extract();
+      }
+      unseen = StepsToGo();
     }
-    return absl::InternalError(
-        absl::StrCat("the pairs about ", factor_.shift(),
-                     " did not converge in ", basis_.dimension(),
-                     " dimensions"));
+    return absl::InternalError(absl::StrCat("the pairs about ", factor_.shift(),
+                                            " did not converge in ",
+                                            basis_.dimension(), " dimensions"));
   }
 
  private:
@@ -128,13 +140,34 @@ class BandFinder {
     below_ = MakeSide(false);
     if (below_.value.empty() && above_.value.empty()) return false;
     floor_ = request_.all_below ? SecondLowest() : 0;
-    const double distance = MeanDistance();
-    num_above_ =
-        request_.above == 0
-            ? 0
-            : Pick(above_, request_.above, request_.any_end_above, distance);
-    num_below_ = Pick(below_, request_.below, request_.any_end_below, distance);
+    distance_ = MeanDistance();
+    num_above_ = request_.above == 0 ? 0
+                                     : Pick(above_, request_.above,
+                                            request_.any_end_above, distance_);
+    num_below_ =
+        Pick(below_, request_.below, request_.any_end_below, distance_);
     return num_above_ >= 0 && num_below_ >= 0;
+  }
+
+  // How many steps from here on are not worth a look.
+  int StepsToGo() {
+    const double excess = std::max(Excess(above_, request_.above),
+                                   Excess(below_, request_.below));
+    const int steps = basis_.num_blocks() - last_look_;
+    const double rate = std::max(kUsualRate, (last_excess_ - excess) / steps);
+    last_look_ = basis_.num_blocks();
+    last_excess_ = excess;
+    return static_cast<int>(kTrustedShare * excess / rate);
+  }
+
+  // By how many decades a residual is too large.
+  double Excess(const Side& side, int wanted) const {
+    double excess = 0;
+    const int there = std::min(wanted, static_cast<int>(side.value.size()));
+    for (int i = 0; i < there; ++i)
+      excess = std::max(
+          excess, std::log10(side.residual[i] / Allowed(side, i, distance_)));
+    return std::min(excess, kMostExcess);
   }
 
   Side MakeSide(bool above) const {
@@ -165,9 +198,9 @@ class BandFinder {
     return (high - low) / std::max(1, above + below);
   }
 
-  bool IsConverged(const Side& side, int i, double distance) const {
-    return side.residual[i] <=
-           std::min(request_.tolerance * std::max(side.value[i], floor_),
+  double Allowed(const Side& side, int i, double distance) const {
+    const double size = std::max(side.value[i], floor_);
+    return std::min(kEstimateShare * request_.tolerance * size,
                     kResolvedShare * distance);
   }
 
@@ -176,7 +209,9 @@ class BandFinder {
   int Pick(const Side& side, int wanted, bool any_end, double distance) const {
     const int size = static_cast<int>(side.value.size());
     for (int count = 0; count <= size; ++count) {
-      if (count > 0 && !IsConverged(side, count - 1, distance)) return -1;
+      if (count > 0 &&
+          !(side.residual[count - 1] <= Allowed(side, count - 1, distance)))
+        return -1;
       if (count < wanted) continue;
       if (any_end) return count;
       if (count == size) return -1;
@@ -236,47 +271,61 @@ class BandFinder {
   }
 
   absl::Status WriteVectors(const RowMajorMatrix& coefficients, Band& band) {
-    const int count = static_cast<int>(band.values.size());
-    band.vectors.resize(static_cast<size_t>(matrix_.n) * count);
-    std::vector<double> residuals(count, 0.0);
-    const int blocks = (count + kBlock - 1) / kBlock;
-    for (int b = 0; b < blocks; b += kTogether) {
-      MARROW_RETURN_IF_ERROR(cancel_.Check());
-      const int together = std::min(kTogether, blocks - b);
-      double* Y[kTogether];
-      double* scratch[kTogether];
-      for (int i = 0; i < together; ++i) {
-        Y[i] = basis_.Block(basis_.num_blocks() + 2 * i);
-        scratch[i] = basis_.Block(basis_.num_blocks() + 2 * i + 1);
-      }
-      team_.For(together, [&](int i) {
-        WriteBlock(coefficients, (b + i) * kBlock, Y[i], scratch[i], band,
-                   residuals);
-      });
+    const size_t count = band.values.size();
+    if (request_.precise) {
+      band.precise_vectors.resize(matrix_.n * count);
+    } else {
+      band.vectors.resize(matrix_.n * count);
     }
-    band.residual = *std::max_element(residuals.begin(), residuals.end());
-    if (band.residual <= kResidualSlack * request_.tolerance)
-      return absl::OkStatus();
+    band.residuals.resize(count);
+    const int width = kTogether * kBlock;
+    for (size_t begin = 0; begin < count; begin += width) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      RowMajorMatrix some = RowMajorMatrix::Zero(coefficients.rows(), width);
+      const size_t there = std::min<size_t>(width, count - begin);
+      some.leftCols(there) = coefficients.middleCols(begin, there);
+      MARROW_RETURN_IF_ERROR(WriteBlocks(some, begin, band));
+    }
+    const double worst =
+        *std::max_element(band.residuals.begin(), band.residuals.end());
+    if (worst <= request_.tolerance) return absl::OkStatus();
     return absl::InternalError(absl::StrCat("a pair about ", factor_.shift(),
-                                            " has the residual ",
-                                            band.residual));
+                                            " has the residual ", worst));
   }
 
   // Vectors `begin` and after of the band, and their residuals.
-  void WriteBlock(const RowMajorMatrix& coefficients, int begin, double* Y,
-                  double* residual, Band& band,
-                  std::vector<double>& residuals) const {
+  absl::Status WriteBlocks(const RowMajorMatrix& coefficients, size_t begin,
+                           Band& band) {
+    std::array<double*, kTogether> Y, scratch;
+    const int scratch_blocks = std::min(kTogether, team_.threads());
+    for (int i = 0; i < kTogether; ++i)
+      Y[i] = basis_.Block(basis_.num_blocks() + i);
+    for (int i = 0; i < scratch_blocks; ++i)
+      scratch[i] = basis_.Block(basis_.num_blocks() + kTogether + i);
+    basis_.Combine(coefficients, Y);
+    for (int b = 0; b < kTogether; b += scratch_blocks) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      team_.For(std::min(scratch_blocks, kTogether - b), [&](int i) {
+        WriteBlock(begin + (b + i) * kBlock, Y[b + i], scratch[i], band);
+      });
+    }
+    return absl::OkStatus();
+  }
+
+  void WriteBlock(size_t begin, const double* Y, double* residual,
+                  Band& band) const {
     const size_t count = band.values.size();
-    const int width = std::min<int>(kBlock, count - begin);
-    RowMajorMatrix block = RowMajorMatrix::Zero(coefficients.rows(), kBlock);
-    block.leftCols(width) = coefficients.middleCols(begin, width);
-    basis_.Combine(block, Y);
+    if (begin >= count) return;
+    const int width = static_cast<int>(std::min<size_t>(kBlock, count - begin));
     std::array<double, kBlock> lambda{}, sums{};
     std::copy_n(band.values.begin() + begin, width, lambda.begin());
     for (int i = 0; i < matrix_.n; ++i) {
       const double* row = Y + static_cast<size_t>(i) * kBlock;
-      for (int c = 0; c < width; ++c)
-        band.vectors[i * count + begin + c] = static_cast<float>(row[c]);
+      if (request_.precise) {
+        std::copy_n(row, width, &band.precise_vectors[i * count + begin]);
+      } else {
+        std::copy_n(row, width, &band.vectors[i * count + begin]);
+      }
       for (int c = 0; c < kBlock; ++c)
         residual[static_cast<size_t>(i) * kBlock + c] = lambda[c] * row[c];
     }
@@ -285,11 +334,9 @@ class BandFinder {
       for (int c = 0; c < kBlock; ++c)
         sums[c] += residual[i * kBlock + c] * residual[i * kBlock + c];
     for (int c = 0; c < width; ++c)
-      residuals[begin + c] = std::sqrt(sums[c]) / std::max(lambda[c], floor_);
+      band.residuals[begin + c] =
+          std::sqrt(sums[c]) / std::max(lambda[c], floor_);
   }
-
-  // The estimate leaves out rounding and the other pairs' share.
-  static constexpr double kResidualSlack = 10;
 
   const SupernodalStructure& matrix_;
   const SupernodalFactor& factor_;
@@ -304,6 +351,9 @@ class BandFinder {
   Eigen::MatrixXd tail_;  // R times the last block of every Ritz vector
   Side above_, below_;
   double floor_ = 0;
+  double distance_ = 0;  // the mean one of the eigenvalues
+  int last_look_ = 0;    // blocks there were
+  double last_excess_ = 0;
   int num_above_ = 0, num_below_ = 0;
 };
 

@@ -72,15 +72,14 @@ void LanczosBasis::Copy(int index, double* W) const {
 }
 
 RowMajorMatrix LanczosBasis::Project(int first, const double* W) const {
-  std::vector<RowMajorMatrix> sums(
-      kParts, RowMajorMatrix::Zero(dimension(), kBlock));
+  std::vector<RowMajorMatrix> sums(kParts,
+                                   RowMajorMatrix::Zero(dimension(), kBlock));
   team_.For(kParts, [&](int part) {
     ForChunks(n_, part, [&](int rows, size_t at) {
       for (int j = first; j < num_blocks_; ++j)
-        kernels_.multiply_add(kBlock, kBlock, rows,
-                              {blocks_[j].data() + at, 1, kBlock}, W + at,
-                              kBlock, sums[part].data() + j * kBlock * kBlock,
-                              kBlock);
+        kernels_.multiply_add(
+            kBlock, kBlock, rows, {blocks_[j].data() + at, 1, kBlock}, W + at,
+            kBlock, sums[part].data() + j * kBlock * kBlock, kBlock);
     });
   });
   return Sum(sums);
@@ -93,10 +92,9 @@ RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
   team_.For(kParts, [&](int part) {
     ForChunks(n_, part, [&](int rows, size_t at) {
       for (int j = first; j < num_blocks_; ++j)
-        kernels_.multiply_subtract(rows, kBlock, kBlock,
-                                   {blocks_[j].data() + at, kBlock, 1},
-                                   C.data() + j * kBlock * kBlock, kBlock,
-                                   W + at, kBlock);
+        kernels_.multiply_subtract(
+            rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
+            C.data() + j * kBlock * kBlock, kBlock, W + at, kBlock);
       kernels_.multiply_add(kBlock, kBlock, rows, {W + at, 1, kBlock}, W + at,
                             kBlock, sums[part].data(), kBlock);
     });
@@ -127,16 +125,20 @@ void LanczosBasis::ReplaceColumns(const std::vector<bool>& which,
 }
 
 void LanczosBasis::Combine(const RowMajorMatrix& coefficients,
-                           double* Y) const {
-  for (int part = 0; part < kParts; ++part)
+                           std::span<double* const> Y) const {
+  const int ldb = static_cast<int>(coefficients.cols());
+  team_.For(kParts, [&](int part) {
     ForChunks(n_, part, [&](int rows, size_t at) {
-      std::memset(Y + at, 0, sizeof(double) * rows * kBlock);
+      for (double* out : Y)
+        std::memset(out + at, 0, sizeof(double) * rows * kBlock);
       for (int j = 0; j < num_blocks_; ++j)
-        kernels_.multiply_add(rows, kBlock, kBlock,
-                              {blocks_[j].data() + at, kBlock, 1},
-                              coefficients.data() + j * kBlock * kBlock, kBlock,
-                              Y + at, kBlock);
+        for (size_t b = 0; b < Y.size(); ++b)
+          kernels_.multiply_add(
+              rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
+              coefficients.data() + j * kBlock * ldb + b * kBlock, ldb,
+              Y[b] + at, kBlock);
     });
+  });
 }
 
 Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
@@ -148,8 +150,7 @@ Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
     scale[c] = gram(c, c) > kVanished * size[c] && gram(c, c) > 0
                    ? 1 / std::sqrt(gram(c, c))
                    : 0;
-  const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * gram * scale.asDiagonal();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   Orthonormaliser result;
   result.B = RowMajorMatrix::Zero(kBlock, kBlock);

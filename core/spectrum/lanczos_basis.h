@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -46,8 +47,9 @@ class LanczosBasis {
   absl::Status Append(const Fill& fill, const CancelToken& cancel,
                       Growth& growth);
 
-  // Y = V * coefficients; coefficients are dimension() x kBlock.
-  void Combine(const RowMajorMatrix& coefficients, double* Y) const;
+  // Y = V * coefficients, a block for every kBlock columns of these.
+  void Combine(const RowMajorMatrix& coefficients,
+               std::span<double* const> Y) const;
 
  private:
   // V'W, and W -= V C and then W'W, for V the blocks from `first` on; C has
@@ -98,9 +100,8 @@ absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
     const RowMajorMatrix C = Project(first, W);
     if (cancel.IsCancelled()) return cancel.Check();
     const RowMajorMatrix gram = SubtractAndGram(first, C, W);
-    const Orthonormaliser q =
-        MakeOrthonormaliser(gram, C.colwise().squaredNorm().transpose() +
-                                      gram.diagonal());
+    const Orthonormaliser q = MakeOrthonormaliser(
+        gram, C.colwise().squaredNorm().transpose() + gram.diagonal());
     growth.projection += C * growth.remainder;
     growth.remainder = q.R * growth.remainder;
     MultiplyInPlace(q.B, W);

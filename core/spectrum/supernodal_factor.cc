@@ -53,8 +53,7 @@ absl::Status SupernodalFactor::Compute(double shift, Team& team,
   team.For(static_cast<int>(branches_.size()), [&](int b) {
     const SupernodalStructure::Branch& branch = structure_.branches[b];
     Workspace& work = branches_[b];
-    work.status =
-        EliminateRun(branch.begin, branch.end, work, alone, cancel);
+    work.status = EliminateRun(branch.begin, branch.end, work, alone, cancel);
   });
   negative_pivots_ = 0;
   for (Workspace& work : branches_) {
@@ -137,10 +136,9 @@ absl::Status SupernodalFactor::Eliminate(const Supernode& node, Workspace& work,
     MARROW_RETURN_IF_ERROR(cancel.Check());
     const int end = std::min(begin + kBlockRows, node.width);
     for (int step = begin; step < end; step += kStepRows)
-      MARROW_RETURN_IF_ERROR(
-          EliminateStep(node, step, std::min(step + kStepRows, end), end,
-                        work.scaled.data() + (step - begin) * stride,
-                        work.negative_pivots));
+      MARROW_RETURN_IF_ERROR(EliminateStep(
+          node, step, std::min(step + kStepRows, end), end,
+          work.scaled.data() + (step - begin) * stride, work.negative_pivots));
     UpdateBelow(node, begin, end, work, team);
     std::memcpy(panel + begin * stride, work.scaled.data(),
                 (end - begin) * stride * sizeof(double));
@@ -202,8 +200,8 @@ void SupernodalFactor::UpdateBelow(const Supernode& node, int begin, int end,
     } else {
       const int i = (tile - own_tiles) * kTileRows;
       kernels_.multiply_subtract(
-          std::min(kTileRows, node.num_rows - i), front_stride - i,
-          end - begin, {scaled + own + i, 1, stride}, rows + own + i, stride,
+          std::min(kTileRows, node.num_rows - i), front_stride - i, end - begin,
+          {scaled + own + i, 1, stride}, rows + own + i, stride,
           work.front.data() + static_cast<size_t>(i) * front_stride + i,
           front_stride);
     }

@@ -123,9 +123,11 @@ absl::StatusOr<std::vector<int>> ColumnCounts(const LowerGraph& lower,
         ++total;
       }
     if (total > most) {
-      return absl::ResourceExhaustedError(absl::StrCat(
-          "the mesh of ", n, " vertices is too entangled to be factorised: "
-          "more than ", most, " entries; is it a surface?"));
+      return absl::ResourceExhaustedError(
+          absl::StrCat("the mesh of ", n,
+                       " vertices is too entangled to be factorised: "
+                       "more than ",
+                       most, " entries; is it a surface?"));
     }
     if (total - asked > kCheckEvery) {
       asked = total;
@@ -152,9 +154,8 @@ std::vector<Run> LeafRuns(const std::vector<int>& parent,
   for (int v = 0; v < n; ++v) {
     if (size[v] > kLeafColumns) {
       // A column joins the one before if their structures are one.
-      const bool same = !runs.empty() &&
-                        size[v - 1] > kLeafColumns && parent[v - 1] == v &&
-                        counts[v - 1] == counts[v] + 1;
+      const bool same = !runs.empty() && size[v - 1] > kLeafColumns &&
+                        parent[v - 1] == v && counts[v - 1] == counts[v] + 1;
       if (same) {
         ++runs.back().width;
         runs.back().num_rows = counts[v] - 1;
@@ -249,8 +250,8 @@ absl::Status FindRows(Structure& s, const CancelToken& cancel) {
     }
     std::sort(begin, out);
     if (k < s.first_top)
-      node.top_rows = static_cast<int>(
-          out - std::lower_bound(begin, out, s.top_column));
+      node.top_rows =
+          static_cast<int>(out - std::lower_bound(begin, out, s.top_column));
     // Leaf runs count their last column's structure, which holds all of it.
     if (out - begin != node.num_rows)
       return absl::InternalError("the symbolic analysis lost count");
@@ -278,9 +279,8 @@ void FindRelative(Structure& s) {
     if (node.parent < 0) continue;
     int cursor = 0;
     for (int i = 0; i < node.num_rows; ++i)
-      s.relative[node.rows + i] =
-          PanelColumn(s, s.supernodes[node.parent], s.rows[node.rows + i],
-                      cursor);
+      s.relative[node.rows + i] = PanelColumn(s, s.supernodes[node.parent],
+                                              s.rows[node.rows + i], cursor);
   }
 }
 
@@ -391,8 +391,8 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
   SupernodalStructure s;
   s.n = static_cast<int>(matrix.rows());
   const Graph graph = GraphOf(matrix);
-  MARROW_ASSIGN_OR_RETURN(
-      s.order, DissectionOrder(graph, positions, threads, cancel));
+  MARROW_ASSIGN_OR_RETURN(s.order,
+                          DissectionOrder(graph, positions, threads, cancel));
   // The tree keeps its shape when its vertices are renumbered by postorder.
   const std::vector<int> postorder =
       Postorder(EliminationTree(LowerGraphOf(graph, s.order)));

@@ -5,8 +5,7 @@
 namespace marrow {
 
 Team::Team(int threads) {
-  for (int i = 1; i < threads; ++i)
-    others_.emplace_back([this] { Work(); });
+  for (int i = 1; i < threads; ++i) others_.emplace_back([this] { Work(); });
 }
 
 Team::~Team() {
