@@ -43,6 +43,7 @@ SegmentTree OneTree(const Prepared& prepared, std::vector<SegmentTree> trees) {
 }  // namespace
 
 absl::Status MergeLevels(const Job& job) {
+  MARROW_RETURN_IF_ERROR(PullPairs(job, 0));
   MARROW_ASSIGN_OR_RETURN(std::vector<SegmentTree> trees, BodyTrees(job));
   const SegmentTree tree = OneTree(job.prepared, std::move(trees));
   for (uint32_t level = 1; level <= job.options.levels; ++level) {
