@@ -49,7 +49,7 @@ constexpr double kUsualRate = 1;
 constexpr double kTrustedShare = 0.8;
 constexpr double kMostExcess = 6;
 // Blocks written at once, so that the basis is read once for them.
-constexpr int kTogether = 4;
+constexpr int kTogether = 3;
 // The estimate of a residual leaves out rounding and the other pairs' share.
 constexpr double kEstimateShare = 0.5;
 
@@ -76,7 +76,7 @@ class BandFinder {
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
     MARROW_RETURN_IF_ERROR(Start());
     const int wanted = request_.below + request_.above;
-    const int most = std::min(matrix_.n - kBlock, 8 * wanted + 60 * kBlock);
+    const int most = std::min(matrix_.n - kBlock, 6 * wanted + 40 * kBlock);
     const int first_look =
         std::min(static_cast<int>(kFirstLook * wanted), most - kBlock);
     int extra = request_.extra_steps;

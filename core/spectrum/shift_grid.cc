@@ -18,11 +18,15 @@ constexpr double kFirstDistance = 10;
 constexpr double kTooMany = 1.1;
 constexpr double kTooFew = 0.3;
 // Pairs of the first band, and of the usual ones. Small problems are cheap to
-// factorise, and then the dense work on a basis is most of it.
+// factorise, and then the dense work on a basis is most of it; of large ones
+// the basis is most of the memory.
 constexpr int kFirstBand = 12;
 constexpr int kUsualBand = 50;
 constexpr int kSmallBand = 25;
 constexpr int kSmallProblem = 12'000;
+constexpr int kLargeBand = 40;
+constexpr int kLargeProblem = 300'000;
+
 constexpr int kMostTries = 60;
 // An interval of this relative width that holds too many is a cluster.
 constexpr double kClusterWidth = 1e-8;
@@ -31,6 +35,11 @@ constexpr double kClusterWidth = 1e-8;
 constexpr double kStepWidth = 0.05;
 constexpr int kMostNudges = 8;
 constexpr double kNudge = 1e-7;
+
+int UsualBand(int n) {
+  if (n < kSmallProblem) return kSmallBand;
+  return n < kLargeProblem ? kUsualBand : kLargeBand;
+}
 
 }  // namespace
 
@@ -46,7 +55,7 @@ absl::Status FactoriseNear(double shift, SupernodalFactor& factor, Team& team,
 }
 
 ShiftGrid::ShiftGrid(int n, int most_pairs, const BandRequest& common)
-    : usual_(n < kSmallProblem ? kSmallBand : kUsualBand),
+    : usual_(UsualBand(n)),
       most_pairs_(most_pairs),
       common_(common),
       mean_distance_(kFirstDistance) {}

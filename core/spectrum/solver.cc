@@ -351,7 +351,7 @@ absl::StatusOr<CertifiedPairs> SolveCertified(
 
 double PredictSolverSeconds(uint64_t vertices, uint32_t count) {
   const double n = static_cast<double>(vertices);
-  return 0.02 + n * (1.6e-7 * count + 4e-6);
+  return 0.02 + n * (1e-7 * count + 5e-6);
 }
 
 uint64_t PredictSolverBytes(uint64_t vertices, uint32_t count) {
