@@ -19,18 +19,15 @@ inline constexpr char kSolverRevision[] = "slicing/2";
 // What the residual ||L phi - lambda M phi|| of a pair, in the M^-1 norm, may
 // be in units of max(lambda, lambda_1). Segmentations are the same at the first
 // as at any smaller one.
-inline constexpr double kSegmentationTolerance = 1e-4;
+inline constexpr double kSolverTolerance = 1e-4;
+// Of pairs in double, and of those that certified_spectrum.h is to make strict.
 inline constexpr double kStrictTolerance = 1e-8;
-
-// Of pairs for segmentation, and of those that are to be strict
-// (certified_spectrum.h).
-inline constexpr double kSolverTolerance = 1e-6;
 inline constexpr double kStrictSolverTolerance = 1e-9;
 
 // Solves anew at every call; keeps nothing.
 class SolverEigenPairSource : public EigenPairSource {
  public:
-  explicit SolverEigenPairSource(double tolerance = kSegmentationTolerance)
+  explicit SolverEigenPairSource(double tolerance = kSolverTolerance)
       : tolerance_(tolerance) {}
 
   absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(

@@ -20,9 +20,9 @@ using Clock = std::chrono::steady_clock;
 // Tighter than what segmentation takes; the precision of float32 vectors.
 constexpr double kTightTolerance = 1e-6;
 
-std::shared_ptr<const EigenPairs> Solve(
-    const CanonicalMesh& mesh, uint32_t count,
-    double tolerance = kSegmentationTolerance) {
+std::shared_ptr<const EigenPairs> Solve(const CanonicalMesh& mesh,
+                                        uint32_t count,
+                                        double tolerance = kSolverTolerance) {
   const CancelToken cancel;
   return SolverEigenPairSource(tolerance)
       .Get(mesh, count, cancel, nullptr)
@@ -102,7 +102,7 @@ TEST(SolverTest, LanczosMissesNoEigenvalue) {
     for (int k = 1; k <= 120; ++k)
       EXPECT_NEAR(pairs->eigenvalues[k] / exact[k], 1, 1e-8) << k;
     const auto usual = Solve(canonical, 120);
-    ExpectSound(canonical, *usual, kSegmentationTolerance);
+    ExpectSound(canonical, *usual, kSolverTolerance);
     for (int k = 1; k <= 120; ++k)
       EXPECT_NEAR(usual->eigenvalues[k] / exact[k], 1, 1e-6) << k;
   }
@@ -143,7 +143,7 @@ class SolverOnAnyShape : public ::testing::TestWithParam<NamedMesh> {};
 TEST_P(SolverOnAnyShape, IsSound) {
   const CanonicalMesh canonical = CanonicalOf(GetParam().mesh);
   ExpectSound(canonical, *Solve(canonical, 50, kTightTolerance));
-  ExpectSound(canonical, *Solve(canonical, 50), kSegmentationTolerance);
+  ExpectSound(canonical, *Solve(canonical, 50), kSolverTolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SolverOnAnyShape,
