@@ -29,8 +29,12 @@ class LruCache {
     return it->second.value;
   }
 
-  // Like Find(), but leaves the order alone.
+  // As Find(), but they leave the order alone.
   bool Contains(const Key& key) const { return entries_.contains(key); }
+  std::shared_ptr<const Value> Peek(const Key& key) const {
+    auto it = entries_.find(key);
+    return it == entries_.end() ? nullptr : it->second.value;
+  }
 
   // Replaces an entry of the same key. A value above the whole budget is not
   // kept, and drops nothing else.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -27,26 +29,53 @@ class JobEigenPairs : public EigenPairSource {
   absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
       const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
       const ProgressCallback& progress) override {
-    const Clock::time_point begin = Clock::now();
-    SpectrumUse use;
-    auto pairs = cache_.Get(mesh, count, cancel, progress, use);
-    seconds_ += SecondsBetween(begin, Clock::now());
-    use_.eigen_pairs = std::max(use_.eigen_pairs, use.eigen_pairs);
-    use_.solver_runs += use.solver_runs;
-    // One miss among several makes the whole a miss.
-    if (use_.outcome != CacheOutcome::kMiss &&
-        use.outcome != CacheOutcome::kHit) {
-      use_.outcome = use.outcome;
-    }
-    return pairs;
+    return Open(mesh, count)
+        ->UpTo(std::numeric_limits<double>::infinity(), cancel, progress);
   }
 
-  const SpectrumUse& use() const { return use_; }
+  std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
+                                        uint32_t count) override {
+    return std::make_unique<Timed>(
+        cache_.Open(mesh, count, uses_.emplace_back()), seconds_);
+  }
+
+  SpectrumUse use() const {
+    SpectrumUse sum;
+    for (const SpectrumUse& use : uses_) {
+      sum.eigen_pairs = std::max(sum.eigen_pairs, use.eigen_pairs);
+      sum.solver_runs += use.solver_runs;
+      // One miss among several makes the whole a miss.
+      if (sum.outcome != CacheOutcome::kMiss &&
+          use.outcome != CacheOutcome::kHit) {
+        sum.outcome = use.outcome;
+      }
+    }
+    return sum;
+  }
   double seconds() const { return seconds_; }
 
  private:
+  class Timed : public EigenPairStream {
+   public:
+    Timed(std::unique_ptr<EigenPairStream> stream, double& seconds)
+        : stream_(std::move(stream)), seconds_(seconds) {}
+
+    absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(
+        double bound, const CancelToken& cancel,
+        const ProgressCallback& progress) override {
+      const Clock::time_point begin = Clock::now();
+      auto pairs = stream_->UpTo(bound, cancel, progress);
+      seconds_ += SecondsBetween(begin, Clock::now());
+      return pairs;
+    }
+
+   private:
+    const std::unique_ptr<EigenPairStream> stream_;
+    double& seconds_;
+  };
+
   SpectrumCache& cache_;
-  SpectrumUse use_;
+  std::deque<SpectrumUse> uses_;  // where they are does not change
   double seconds_ = 0;
 };
 

@@ -2,19 +2,29 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <new>
 #include <optional>
 #include <utility>
 
 #include "absl/time/time.h"
+#include "core/base/status_macros.h"
 
 namespace marrow {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const absl::Duration kPollInterval = absl::Milliseconds(20);
 
 // What an entry takes besides its numbers.
 constexpr uint64_t kEntryOverhead = 512;
+
+// Whether these are all pairs up to `bound` and one beyond, or `count` of them.
+bool Reach(const EigenPairs& pairs, uint32_t count, double bound) {
+  const uint32_t there = pairs.NumPairs();
+  return pairs.complete || there > count ||
+         (there > 0 && pairs.eigenvalues[there - 1] > bound);
+}
 
 // Forwards only what rises: a caller that waited for one computation and then
 // does its own would otherwise see the share fall back to 0.
@@ -38,8 +48,93 @@ class RisingProgress {
 // cache's lock, and `done` signalled.
 struct SpectrumCache::Flight {
   std::atomic<double> fraction{0};
-  absl::CondVar done;
+  mutable absl::CondVar done;
   std::optional<Result> result;
+};
+
+class SpectrumCache::Stream : public EigenPairStream {
+ public:
+  // Of one of the uses the stream is told of, or of none that anyone asks for.
+  Stream(SpectrumCache& cache, const CanonicalMesh& mesh, uint32_t count,
+         SpectrumUse* use)
+      : cache_(cache),
+        mesh_(mesh),
+        key_(KeyOf(mesh, count)),
+        use_(use != nullptr ? *use : own_use_) {
+    use_ = SpectrumUse();
+    use_.eigen_pairs = key_.count;
+  }
+
+  Result UpTo(double bound, const CancelToken& cancel,
+              const ProgressCallback& progress) override {
+    RisingProgress rising(progress);
+    std::shared_ptr<Flight> flight;
+    {
+      absl::MutexLock lock(&cache_.mu_);
+      while (flight == nullptr) {
+        if (auto pairs = cache_.entries_.Find(key_);
+            pairs != nullptr && Reach(*pairs, key_.count, bound))
+          return pairs;
+        auto [it, inserted] = cache_.flights_.try_emplace(key_);
+        if (inserted) {
+          flight = it->second = std::make_shared<Flight>();
+          break;
+        }
+        const std::shared_ptr<Flight> other = it->second;
+        MARROW_RETURN_IF_ERROR(WaitFor(*other, cancel, rising));
+        if (!other->result->ok()) {
+          if (absl::IsCancelled(other->result->status())) continue;
+          return other->result->status();
+        }
+        if (Reach(***other->result, key_.count, bound)) return **other->result;
+      }
+    }
+    return Compute(*flight, bound, cancel, rising);
+  }
+
+ private:
+  absl::Status WaitFor(const Flight& other, const CancelToken& cancel,
+                       RisingProgress& rising)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(cache_.mu_) {
+    if (use_.outcome == CacheOutcome::kHit)
+      use_.outcome = CacheOutcome::kJoined;
+    while (!other.result.has_value()) {
+      other.done.WaitWithTimeout(&cache_.mu_, kPollInterval);
+      if (cancel.IsCancelled()) return cancel.Check();
+      cache_.mu_.Unlock();
+      rising(other.fraction.load(std::memory_order_relaxed));
+      cache_.mu_.Lock();
+    }
+    return absl::OkStatus();
+  }
+
+  Result Compute(Flight& flight, double bound, const CancelToken& cancel,
+                 RisingProgress& rising) {
+    use_.outcome = CacheOutcome::kMiss;
+    Result result = absl::InternalError("the eigensolver gave nothing");
+    try {
+      if (solver_ == nullptr) {
+        ++use_.solver_runs;
+        solver_ = cache_.solver_->Open(mesh_, key_.count);
+      }
+      result = solver_->UpTo(bound, cancel, [&](double fraction) {
+        flight.fraction.store(fraction, std::memory_order_relaxed);
+        rising(fraction);
+      });
+    } catch (const std::bad_alloc&) {
+      result = absl::ResourceExhaustedError("out of memory for eigen-pairs");
+    }
+    cache_.Land(key_, flight, result);
+    if (!result.ok() || Reach(**result, key_.count, kInfinity)) solver_.reset();
+    return result;
+  }
+
+  SpectrumCache& cache_;
+  const CanonicalMesh& mesh_;
+  const Key key_;
+  SpectrumUse own_use_;
+  SpectrumUse& use_;
+  std::unique_ptr<EigenPairStream> solver_;  // null before and after its work
 };
 
 SpectrumCache::SpectrumCache(std::shared_ptr<EigenPairSource> solver,
@@ -64,73 +159,37 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SpectrumCache::Get(
 absl::StatusOr<std::shared_ptr<const EigenPairs>> SpectrumCache::Get(
     const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
     const ProgressCallback& progress, SpectrumUse& use) {
-  const Key key = KeyOf(mesh, count);
-  RisingProgress rising(progress);
-  use = SpectrumUse();
-  const auto take = [&use](const std::shared_ptr<const EigenPairs>& pairs) {
-    use.eigen_pairs = pairs->NumPairs() - 1;
-    return pairs;
-  };
-  std::shared_ptr<Flight> flight;
-  {
-    absl::MutexLock lock(&mu_);
-    while (flight == nullptr) {
-      if (auto pairs = entries_.Find(key)) return take(pairs);
-      auto [it, inserted] = flights_.try_emplace(key);
-      if (inserted) {
-        flight = it->second = std::make_shared<Flight>();
-        break;
-      }
-      const std::shared_ptr<Flight> other = it->second;
-      use.outcome = CacheOutcome::kJoined;
-      while (!other->result.has_value()) {
-        other->done.WaitWithTimeout(&mu_, kPollInterval);
-        if (cancel.IsCancelled()) return cancel.Check();
-        mu_.Unlock();
-        rising(other->fraction.load(std::memory_order_relaxed));
-        mu_.Lock();
-      }
-      if (other->result->ok()) return take(**other->result);
-      if (!absl::IsCancelled(other->result->status())) {
-        return other->result->status();
-      }
-    }
-  }
-  use.outcome = CacheOutcome::kMiss;
-  use.solver_runs = 1;
-  Result result = Lead(key, *flight, mesh, cancel,
-                       [&rising](double fraction) { rising(fraction); });
-  if (result.ok()) take(*result);
-  return result;
+  return Open(mesh, count, use)->UpTo(kInfinity, cancel, progress);
 }
 
-SpectrumCache::Result SpectrumCache::Lead(const Key& key, Flight& flight,
-                                          const CanonicalMesh& mesh,
-                                          const CancelToken& cancel,
-                                          const ProgressCallback& progress) {
-  Result result = absl::InternalError("the eigensolver gave nothing");
-  try {
-    result = solver_->Get(
-        mesh, key.count, cancel, [&flight, &progress](double fraction) {
-          flight.fraction.store(fraction, std::memory_order_relaxed);
-          progress(fraction);
-        });
-  } catch (const std::bad_alloc&) {
-    result = absl::ResourceExhaustedError("out of memory for eigen-pairs");
-  }
+std::unique_ptr<EigenPairStream> SpectrumCache::Open(const CanonicalMesh& mesh,
+                                                     uint32_t count) {
+  return std::make_unique<Stream>(*this, mesh, count, nullptr);
+}
+
+std::unique_ptr<EigenPairStream> SpectrumCache::Open(const CanonicalMesh& mesh,
+                                                     uint32_t count,
+                                                     SpectrumUse& use) {
+  return std::make_unique<Stream>(*this, mesh, count, &use);
+}
+
+void SpectrumCache::Land(const Key& key, Flight& flight, Result result) {
   absl::MutexLock lock(&mu_);
   if (result.ok()) {
-    entries_.Insert(key, *result, (*result)->Bytes() + kEntryOverhead);
+    const auto entry = entries_.Peek(key);
+    if (entry == nullptr || entry->NumPairs() < (*result)->NumPairs())
+      entries_.Insert(key, *result, (*result)->Bytes() + kEntryOverhead);
   }
-  flight.result = result;
+  flight.result = std::move(result);
   flights_.erase(key);
   flight.done.SignalAll();
-  return result;
 }
 
 bool SpectrumCache::Contains(const CanonicalMesh& mesh, uint32_t count) {
   absl::MutexLock lock(&mu_);
-  return entries_.Contains(KeyOf(mesh, count));
+  const Key key = KeyOf(mesh, count);
+  const auto pairs = entries_.Peek(key);
+  return pairs != nullptr && Reach(*pairs, key.count, kInfinity);
 }
 
 uint64_t SpectrumCache::bytes() {

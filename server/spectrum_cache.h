@@ -26,10 +26,9 @@ struct SpectrumUse {
   uint32_t eigen_pairs = 0;  // without the constant one
 };
 
-// The key is the geometry, the number of pairs and the solver's revision: an
-// entry with more pairs does not serve a request for fewer, since Lanczos
-// rounds differently for another count and the answer would depend on who
-// asked before.
+// The key is the geometry and the number of pairs that a caller may want in
+// all. An entry holds the first of them, as many as anyone needed so far; it
+// grows.
 //
 // Thread safe.
 class SpectrumCache : public EigenPairSource {
@@ -43,14 +42,22 @@ class SpectrumCache : public EigenPairSource {
       const ProgressCallback& progress) override;
 
   // Get() that also tells in `use` how the pairs were had.
-  //
-  // Callers for one key wait for the first of them, which computes. Where that
-  // one is cancelled, another takes over; where it fails, those who waited get
-  // its error, and whoever asks later tries anew. A caller that is cancelled
-  // stops waiting within kPollInterval.
   absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
       const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
       const ProgressCallback& progress, SpectrumUse& use);
+
+  // Callers for one key wait while one of them computes, and then take what it
+  // found or go on. Where that one is cancelled, another takes over; where it
+  // fails, those who waited get its error, and whoever asks later tries anew. A
+  // caller that is cancelled stops waiting within kPollInterval. Nobody waits
+  // for a stream that is not computing.
+  std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
+                                        uint32_t count) override;
+
+  // Open() that also tells in `use`, after every call of the stream, how the
+  // pairs were had so far; it must outlive the stream.
+  std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
+                                        uint32_t count, SpectrumUse& use);
 
   // Whether Get() would be a hit now.
   bool Contains(const CanonicalMesh& mesh, uint32_t count);
@@ -64,11 +71,12 @@ class SpectrumCache : public EigenPairSource {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   struct Flight;
+  class Stream;
   using Result = absl::StatusOr<std::shared_ptr<const EigenPairs>>;
 
   static Key KeyOf(const CanonicalMesh& mesh, uint32_t count);
-  Result Lead(const Key& key, Flight& flight, const CanonicalMesh& mesh,
-              const CancelToken& cancel, const ProgressCallback& progress);
+  // Ends a flight, which all who wait for it see.
+  void Land(const Key& key, Flight& flight, Result result);
 
   const std::shared_ptr<EigenPairSource> solver_;
   absl::Mutex mu_;

@@ -1,9 +1,12 @@
 #include "core/pipeline/job.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/status_macros.h"
+#include "core/diffusion/diffusion_map.h"
 #include "core/operators/laplacian.h"
 #include "core/pipeline/labels.h"
 #include "core/skeleton/skeleton.h"
@@ -39,18 +42,56 @@ struct PreparedBody::Own {
 };
 
 PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
-                           std::shared_ptr<const EigenPairs> pairs)
+                           std::unique_ptr<EigenPairStream> stream)
     : area_(body.canonical->report.area),
       share_(body.share),
       own_(prepared.bodies.IsWhole()
                ? nullptr
                : std::make_shared<const Own>(body.canonical->mesh)),
-      pairs_(std::move(pairs)),
+      stream_(std::move(stream)),
       context_{body.canonical->mesh,
-               own_ ? own_->adjacency : prepared.adjacency, *pairs_,
+               own_ ? own_->adjacency : prepared.adjacency, pairs_,
                own_ ? own_->areas : prepared.areas,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
                          body.bridges)} {}
+
+absl::Status PreparedBody::Pull(double area_share, double delta,
+                                const CancelToken& cancel,
+                                const ProgressCallback& progress) {
+  const bool all = area_share <= 0;
+  double bound = all ? std::numeric_limits<double>::infinity() : 0;
+  while (stream_ != nullptr) {
+    if (!all && pairs_.NumPairs() > 1) {
+      // A little less, for the sum of a region's areas may be rounded.
+      const double t = TimeScale(pairs_, (1 - 1e-9) * area_share);
+      if (MapDimension(pairs_, t, delta)) return absl::OkStatus();
+      bound = std::max(-std::log(delta) / t,
+                       pairs_.eigenvalues[pairs_.NumPairs() - 1]);
+    }
+    MARROW_ASSIGN_OR_RETURN(const std::shared_ptr<const EigenPairs> longer,
+                            stream_->UpTo(bound, cancel, progress));
+    const bool ended = longer->NumPairs() == pairs_.NumPairs();
+    if (ended || std::isinf(bound)) stream_.reset();
+    if (!ended) pairs_ = *longer;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status PullPairs(const Job& job, double area_share) {
+  double before = 0;
+  for (const auto& body : job.bodies) {
+    // The solver looks at the token alone, so a sink that has had enough is
+    // heard when the solver is done, unless its owner cancels too.
+    MARROW_RETURN_IF_ERROR(body->Pull(
+        area_share, job.options.split.delta, job.cancel, [&](double share) {
+          const double done = before + body->share() * share;
+          (void)job.reporter.Progress(
+              Stage::kSpectrum, kMeshDone + (kSpectrumDone - kMeshDone) * done);
+        }));
+    before += body->share();
+  }
+  return absl::OkStatus();
+}
 
 absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,
                        uint32_t level) {

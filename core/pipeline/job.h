@@ -57,10 +57,18 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies);
 // used again, so `prepared` and the body must outlive it.
 class PreparedBody {
  public:
+  // There are no pairs before the first Pull().
   PreparedBody(const Prepared& prepared, const Body& body,
-               std::shared_ptr<const EigenPairs> pairs);
+               std::unique_ptr<EigenPairStream> stream);
   PreparedBody(const PreparedBody&) = delete;
   PreparedBody& operator=(const PreparedBody&) = delete;
+
+  // Sees to it that the pairs suffice for regions of at least `area_share` of
+  // the body, unless the stream ends before; all pairs for a share of 0. What
+  // was read from context().pairs before is not to be used any more. Errors:
+  // those of EigenPairStream.
+  absl::Status Pull(double area_share, double delta, const CancelToken& cancel,
+                    const ProgressCallback& progress);
 
   const SplitContext& context() const { return context_; }
   double area() const { return area_; }    // in units of the positions
@@ -72,7 +80,8 @@ class PreparedBody {
   const double area_;
   const double share_;
   const std::shared_ptr<const Own> own_;
-  const std::shared_ptr<const EigenPairs> pairs_;
+  std::unique_ptr<EigenPairStream> stream_;  // null once it has ended
+  EigenPairs pairs_;
   const SplitContext context_;
 };
 
@@ -100,7 +109,7 @@ struct Telling {
 struct Job {
   std::shared_ptr<const Workspace> workspace;
   const Prepared& prepared;
-  const std::vector<std::unique_ptr<PreparedBody>>& bodies;
+  const std::vector<std::unique_ptr<PreparedBody>>& bodies;  // not pulled yet
   const SegmentationOptions& options;
   const CancelToken& cancel;
   Reporter& reporter;
@@ -108,6 +117,9 @@ struct Job {
 
   operator Telling() const { return {prepared, reporter, sink}; }
 };
+
+// PreparedBody::Pull() for all bodies, reported as Stage::kSpectrum.
+absl::Status PullPairs(const Job& job, double area_share);
 
 // Labels and skeleton of a level, to the sink.
 absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,

@@ -48,6 +48,7 @@ SegmentTree OneTree(const Prepared& prepared, std::vector<MergeTree>& trees) {
 }  // namespace
 
 absl::Status MergeLevels(const Job& job) {
+  MARROW_RETURN_IF_ERROR(PullPairs(job, 0));
   MARROW_ASSIGN_OR_RETURN(std::vector<MergeTree> trees, BodyTrees(job));
   MergedPieces pieces = JoinPieces(job.prepared.bodies, trees);
   const size_t count =

@@ -12,30 +12,6 @@
 namespace marrow {
 namespace {
 
-// The pairs of every body, in their order.
-absl::StatusOr<std::vector<std::shared_ptr<const EigenPairs>>> PullPairs(
-    const Bodies& bodies, uint32_t count, EigenPairSource& source,
-    const CancelToken& cancel, Reporter& reporter) {
-  std::vector<std::shared_ptr<const EigenPairs>> pairs;
-  double before = 0;
-  for (const Body& body : bodies.bodies) {
-    // The solver looks at the token alone, so a sink that has had enough is
-    // heard when the solver is done, unless its owner cancels too.
-    MARROW_ASSIGN_OR_RETURN(
-        std::shared_ptr<const EigenPairs> own,
-        source.Get(*body.canonical, PairsOfBody(body, count), cancel,
-                   [&](double share) {
-                     const double done = before + body.share * share;
-                     (void)reporter.Progress(
-                         Stage::kSpectrum,
-                         kMeshDone + (kSpectrumDone - kMeshDone) * done);
-                   }));
-    pairs.push_back(std::move(own));
-    before += body.share;
-  }
-  return pairs;
-}
-
 // DecodeDraco, then Canonicalize.
 absl::StatusOr<CanonicalMesh> LoadCanonical(std::string_view draco_bytes,
                                             const MeshLimits& limits) {
@@ -75,14 +51,12 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   const Bodies& bodies = workspace->bodies = FindBodies(canonical);
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
-  MARROW_ASSIGN_OR_RETURN(
-      const auto eigen_pairs,
-      PullPairs(bodies, options.eigen_pairs, pairs, cancel, reporter));
   const Prepared& prepared =
       workspace->prepared.emplace(Prepare(canonical, bodies));
-  for (size_t b = 0; b < eigen_pairs.size(); ++b)
+  for (const Body& body : bodies.bodies)
     workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
-        prepared, bodies.bodies[b], eigen_pairs[b]));
+        prepared, body,
+        pairs.Open(*body.canonical, PairsOfBody(body, options.eigen_pairs))));
   const Job job{workspace, prepared, workspace->prepared_bodies,
                 options,   cancel,   reporter,
                 sink};

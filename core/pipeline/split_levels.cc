@@ -11,11 +11,24 @@
 namespace marrow {
 namespace {
 
+// What its pairs are of a level.
+constexpr double kPairsShare = 0.5;
+
 // Where the work on a body stands.
 struct Growing {
-  double share;
+  PreparedBody* body;
   TreeBuilder builder;
   bool done = false;
+
+  // As a share of the body, the least area of those that will be tried next.
+  double LeastShare() const {
+    double least = body->area();
+    for (const SegmentNode& node : builder.tree().nodes)
+      if (node.level == builder.depth() && node.area > 0 &&
+          node.faces.size() >= kMinRegionFaces)
+        least = std::min(least, node.area);
+    return least / body->area();
+  }
 
   // Whether it became deeper. Not tried again once it did not.
   absl::StatusOr<bool> Deepen(const CancelToken& cancel,
@@ -31,12 +44,30 @@ struct Growing {
 // The tree of the whole mesh, a level at a time.
 class Forest {
  public:
+  // REQUIRES: the bodies have the pairs that a region of all of them takes.
   explicit Forest(const Job& job) : prepared_(job.prepared) {
     for (const auto& body : job.bodies)
       bodies_.push_back(
-          {body->share(),
+          {body.get(),
            TreeBuilder(body->context(), job.options.split, body->area())});
     Plant();
+  }
+
+  // The pairs that the next level takes.
+  absl::Status Pull(const Job& job, const ProgressCallback& progress) {
+    double before = 0;
+    for (Growing& growing : bodies_) {
+      const double share = growing.body->share();
+      if (!growing.done) {
+        MARROW_RETURN_IF_ERROR(
+            growing.body->Pull(growing.LeastShare(), job.options.split.delta,
+                               job.cancel, [&](double done) {
+                                 progress(std::min(1.0, before + share * done));
+                               }));
+      }
+      before += share;
+    }
+    return absl::OkStatus();
   }
 
   // As TreeBuilder::Deepen(); the first split of several bodies is into them.
@@ -45,13 +76,14 @@ class Forest {
     if (bodies_.size() > 1 && !std::exchange(apart_, true)) return true;
     bool any = false;
     double before = 0;
-    for (Growing& body : bodies_) {
-      MARROW_ASSIGN_OR_RETURN(
-          const bool deeper, body.Deepen(cancel, [&](double share) {
-            progress(std::min(1.0, before + body.share * share));
-          }));
+    for (Growing& growing : bodies_) {
+      const double area = growing.body->share();
+      MARROW_ASSIGN_OR_RETURN(const bool deeper,
+                              growing.Deepen(cancel, [&](double share) {
+                                progress(std::min(1.0, before + area * share));
+                              }));
       any |= deeper;
-      before += body.share;
+      before += area;
     }
     Plant();
     return any;
@@ -89,17 +121,23 @@ class Forest {
 }  // namespace
 
 absl::Status SplitLevels(const Job& job) {
-  const uint32_t levels = job.options.levels;
+  // What the bodies themselves take; regions of them take more.
+  MARROW_RETURN_IF_ERROR(PullPairs(job, 1));
   Forest forest(job);
-  for (uint32_t level = 1; level <= levels; ++level) {
+  for (uint32_t level = 1; level <= job.options.levels; ++level) {
     absl::Status reported;
-    MARROW_ASSIGN_OR_RETURN(
-        const bool deeper, forest.Deepen(job.cancel, [&](double share) {
-          reported.Update(job.reporter.Progress(
-              Stage::kSegments, kSpectrumDone + (1 - kSpectrumDone) *
-                                                    (level - 1 + share) /
-                                                    levels));
-        }));
+    const auto report = [&](double share) {
+      reported.Update(job.reporter.Progress(
+          Stage::kSegments, kSpectrumDone + (1 - kSpectrumDone) *
+                                                (level - 1 + share) /
+                                                job.options.levels));
+    };
+    MARROW_RETURN_IF_ERROR(
+        forest.Pull(job, [&](double share) { report(kPairsShare * share); }));
+    MARROW_ASSIGN_OR_RETURN(const bool deeper,
+                            forest.Deepen(job.cancel, [&](double share) {
+                              report(kPairsShare + (1 - kPairsShare) * share);
+                            }));
     MARROW_RETURN_IF_ERROR(reported);
     if (!deeper && level > 1) break;
     MARROW_RETURN_IF_ERROR(EmitLevel(job, forest.tree(), level));

@@ -22,9 +22,7 @@ class AlignedBuffer {
  private:
   static constexpr std::align_val_t kAlignment{64};
   struct Free {
-    void operator()(double* data) const {
-      ::operator delete(data, kAlignment);
-    }
+    void operator()(double* data) const { ::operator delete(data, kAlignment); }
   };
   std::unique_ptr<double, Free> data_;
 };

@@ -1,21 +1,25 @@
 // Block Lanczos with full orthogonalisation for (A - shift I)^-1, whose largest
 // eigenvalues theta = 1 / (lambda - shift) are the nearest lambda.
 //
-// The process begins with the solutions of a random block: it saves one block
-// of a basis that would hold little of what is wanted. The projected matrix T
-// is kept whole, not tridiagonal, so that a block may hold new directions where
-// the process found an invariant subspace; that is how a cluster with more
-// members than a block has columns comes out whole.
+// The process begins with the solutions of a random block, not with that block:
+// it would hold little of what is wanted. The projected matrix T is kept whole,
+// not its band alone, so that a block may hold new directions where the process
+// found an invariant subspace; that is how a cluster with more members than a
+// block has columns comes out whole.
 //
 // With (A - shift I)^-1 V = V T + Q R and T s = theta s the Ritz vector V s has
 // a residual under A that may be huge, for what is rough in Q. The vector
 // (A - shift I)^-1 V s / theta = V s + Q R s / theta has |R s| / theta^2, free
 // of it (Ericsson and Ruhe 1980). It is taken for the eigenvector.
+//
+// Starting from a coarse problem's vectors was tried and was slower: a Krylov
+// space is better at parting neighbours than at being told about them.
 #include "core/spectrum/band_lanczos.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -37,7 +41,17 @@ constexpr double kKnownShare = 0.02;
 // are not told apart.
 constexpr double kResolvedShare = 0.05;
 // Looking for convergence in a basis of fewer vectors a pair is in vain.
-constexpr double kFirstLook = 1.5;
+constexpr double kFirstLook = 2;
+// Residuals fall by less than so many decades a step, or as fast as they last
+// did; a look costs as much as a step, so steps that cannot be the last go
+// unseen.
+constexpr double kUsualRate = 1;
+constexpr double kTrustedShare = 0.8;
+constexpr double kMostExcess = 6;
+// Blocks written at once, so that the basis is read once for them.
+constexpr int kTogether = 3;
+// The estimate of a residual leaves out rounding and the other pairs' share.
+constexpr double kEstimateShare = 0.5;
 
 // Ritz pairs on one side of the shift, the nearest first.
 struct Side {
@@ -50,58 +64,67 @@ class BandFinder {
  public:
   BandFinder(const SupernodalStructure& matrix, const SupernodalFactor& factor,
              const BandRequest& request, LanczosWorkspace& workspace,
-             const CancelToken& cancel)
+             Team& team, const CancelToken& cancel)
       : matrix_(matrix),
         factor_(factor),
         request_(request),
+        team_(team),
         cancel_(cancel),
-        basis_(matrix.n, workspace.blocks),
+        basis_(matrix.n, workspace.blocks, team),
         seed_(1000 * request.extra_steps) {}
 
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
     MARROW_RETURN_IF_ERROR(Start());
     const int wanted = request_.below + request_.above;
-    const int first_look = static_cast<int>(kFirstLook * wanted);
-    const int most = std::min(matrix_.n - kBlock, 6 * wanted + 20 * kBlock);
+    const int most = std::min(matrix_.n - kBlock, 6 * wanted + 40 * kBlock);
+    const int first_look =
+        std::min(static_cast<int>(kFirstLook * wanted), most - kBlock);
     int extra = request_.extra_steps;
-    const int next_look = std::min(first_look, most - kBlock);
-    while (T_.rows() + kBlock <= most) {
+    int unseen = 0;
+    while (basis_.dimension() < most) {
       MARROW_RETURN_IF_ERROR(Step());
       on_step();
-      if (T_.rows() < next_look || !Converged()) continue;
-      if (extra-- <= 0) return Extract();
+      if (T_.rows() < first_look) continue;
+      if (unseen-- > 0 && basis_.dimension() < most) continue;
+      if (Converged()) {
+        if (extra-- <= 0) return Extract();
+      }
+      unseen = StepsToGo();
     }
-    return absl::InternalError(
-        absl::StrCat("the pairs about ", factor_.shift(),
-                     " did not converge in ", T_.rows(), " dimensions"));
+    return absl::InternalError(absl::StrCat("the pairs about ", factor_.shift(),
+                                            " did not converge in ",
+                                            basis_.dimension(), " dimensions"));
   }
 
  private:
-  void Fill(double* Z) {
+  void FillAnew(double* Z) {
     basis_.FillRandomly(Z, ++seed_);
-    factor_.Solve(Z);
+    factor_.Solve(Z, team_);
   }
 
   absl::Status Append(LanczosBasis::Growth& growth) {
-    return basis_.Append([this](double* Z) { Fill(Z); }, cancel_, growth);
+    return basis_.Append([this](double* Z) { FillAnew(Z); }, cancel_, growth);
   }
 
+  // The solutions of a random block.
   absl::Status Start() {
-    Fill(basis_.Block(0));
+    double* X = basis_.Block(0);
+    basis_.FillRandomly(X, ++seed_);
+    MARROW_RETURN_IF_ERROR(cancel_.Check());
+    factor_.Solve(X, team_);
     LanczosBasis::Growth unused;
     return Append(unused);
   }
 
-  // Extends T by a block, and the basis by the next.
+  // Takes the last block of the basis through the operator.
   absl::Status Step() {
-    const double* last = basis_.Block(basis_.num_blocks() - 1);
-    double* next = basis_.Block(basis_.num_blocks());
-    std::copy_n(last, static_cast<size_t>(matrix_.n) * kBlock, next);
     MARROW_RETURN_IF_ERROR(cancel_.Check());
-    factor_.Solve(next);
+    double* W = basis_.Block(basis_.num_blocks());
+    basis_.Copy(basis_.num_blocks() - 1, W);
+    factor_.Solve(W, team_);
     LanczosBasis::Growth growth;
     MARROW_RETURN_IF_ERROR(Append(growth));
-    const int old = static_cast<int>(T_.rows());
+    const Eigen::Index old = T_.rows();
     T_.conservativeResize(old + kBlock, old + kBlock);
     T_.rightCols(kBlock) = growth.projection;
     T_.bottomRows(kBlock) = growth.projection.transpose();
@@ -111,20 +134,40 @@ class BandFinder {
 
   // Solves the projected problem and picks the pairs.
   bool Converged() {
-    const Eigen::MatrixXd symmetric = 0.5 * (T_ + T_.transpose());
-    ritz_.compute(symmetric);
+    ritz_.compute(0.5 * (T_ + T_.transpose()));
     tail_ = R_ * ritz_.eigenvectors().bottomRows(kBlock);
     above_ = MakeSide(true);
     below_ = MakeSide(false);
     if (below_.value.empty() && above_.value.empty()) return false;
     floor_ = request_.all_below ? SecondLowest() : 0;
-    const double distance = MeanDistance();
-    num_above_ =
-        request_.above == 0
-            ? 0
-            : Pick(above_, request_.above, request_.any_end_above, distance);
-    num_below_ = Pick(below_, request_.below, request_.any_end_below, distance);
+    distance_ = MeanDistance();
+    num_above_ = request_.above == 0 ? 0
+                                     : Pick(above_, request_.above,
+                                            request_.any_end_above, distance_);
+    num_below_ =
+        Pick(below_, request_.below, request_.any_end_below, distance_);
     return num_above_ >= 0 && num_below_ >= 0;
+  }
+
+  // How many steps from here on are not worth a look.
+  int StepsToGo() {
+    const double excess = std::max(Excess(above_, request_.above),
+                                   Excess(below_, request_.below));
+    const int steps = basis_.num_blocks() - last_look_;
+    const double rate = std::max(kUsualRate, (last_excess_ - excess) / steps);
+    last_look_ = basis_.num_blocks();
+    last_excess_ = excess;
+    return static_cast<int>(kTrustedShare * excess / rate);
+  }
+
+  // By how many decades a residual is too large.
+  double Excess(const Side& side, int wanted) const {
+    double excess = 0;
+    const int there = std::min(wanted, static_cast<int>(side.value.size()));
+    for (int i = 0; i < there; ++i)
+      excess = std::max(
+          excess, std::log10(side.residual[i] / Allowed(side, i, distance_)));
+    return std::min(excess, kMostExcess);
   }
 
   Side MakeSide(bool above) const {
@@ -155,9 +198,9 @@ class BandFinder {
     return (high - low) / std::max(1, above + below);
   }
 
-  bool IsConverged(const Side& side, int i, double distance) const {
-    return side.residual[i] <=
-           std::min(request_.tolerance * std::max(side.value[i], floor_),
+  double Allowed(const Side& side, int i, double distance) const {
+    const double size = std::max(side.value[i], floor_);
+    return std::min(kEstimateShare * request_.tolerance * size,
                     kResolvedShare * distance);
   }
 
@@ -166,7 +209,9 @@ class BandFinder {
   int Pick(const Side& side, int wanted, bool any_end, double distance) const {
     const int size = static_cast<int>(side.value.size());
     for (int count = 0; count <= size; ++count) {
-      if (count > 0 && !IsConverged(side, count - 1, distance)) return -1;
+      if (count > 0 &&
+          !(side.residual[count - 1] <= Allowed(side, count - 1, distance)))
+        return -1;
       if (count < wanted) continue;
       if (any_end) return count;
       if (count == size) return -1;
@@ -213,9 +258,8 @@ class BandFinder {
   // Of the vectors in the basis, the last block included; orthonormalised,
   // which is a matter of their tails alone.
   RowMajorMatrix Coefficients(const std::vector<int>& chosen) const {
-    const int m = static_cast<int>(T_.rows());
     const int count = static_cast<int>(chosen.size());
-    Eigen::MatrixXd coefficients(m + kBlock, count);
+    Eigen::MatrixXd coefficients(basis_.dimension(), count);
     for (int c = 0; c < count; ++c) {
       const double theta = ritz_.eigenvalues()[chosen[c]];
       coefficients.col(c) << ritz_.eigenvectors().col(chosen[c]),
@@ -227,54 +271,77 @@ class BandFinder {
   }
 
   absl::Status WriteVectors(const RowMajorMatrix& coefficients, Band& band) {
-    const int count = static_cast<int>(band.values.size());
-    const size_t n = matrix_.n;
-    band.vectors.resize(n * count);
-    double* Y = basis_.Block(basis_.num_blocks());
-    double* AY = basis_.Block(basis_.num_blocks() + 1);
-    for (int begin = 0; begin < count; begin += kBlock) {
-      MARROW_RETURN_IF_ERROR(cancel_.Check());
-      const int width = std::min(kBlock, count - begin);
-      RowMajorMatrix block =
-          RowMajorMatrix::Zero(coefficients.rows(), kBlock);
-      block.leftCols(width) = coefficients.middleCols(begin, width);
-      basis_.Combine(block, Y);
-      for (size_t i = 0; i < n; ++i)
-        for (int c = 0; c < width; ++c)
-          band.vectors[i * count + begin + c] =
-              static_cast<float>(Y[i * kBlock + c]);
-      MARROW_RETURN_IF_ERROR(cancel_.Check());
-      matrix_.Multiply(Y, AY);
-      MeasureResiduals(Y, AY, begin, width, band);
+    const size_t count = band.values.size();
+    if (request_.precise) {
+      band.precise_vectors.resize(matrix_.n * count);
+    } else {
+      band.vectors.resize(matrix_.n * count);
     }
-    if (band.residual <= kResidualSlack * request_.tolerance)
-      return absl::OkStatus();
+    band.residuals.resize(count);
+    const int width = kTogether * kBlock;
+    for (size_t begin = 0; begin < count; begin += width) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      RowMajorMatrix some = RowMajorMatrix::Zero(coefficients.rows(), width);
+      const size_t there = std::min<size_t>(width, count - begin);
+      some.leftCols(there) = coefficients.middleCols(begin, there);
+      MARROW_RETURN_IF_ERROR(WriteBlocks(some, begin, band));
+    }
+    const double worst =
+        *std::max_element(band.residuals.begin(), band.residuals.end());
+    if (worst <= request_.tolerance) return absl::OkStatus();
     return absl::InternalError(absl::StrCat("a pair about ", factor_.shift(),
-                                            " has the residual ",
-                                            band.residual));
+                                            " has the residual ", worst));
   }
 
-  void MeasureResiduals(const double* Y, const double* AY, int begin, int width,
-                        Band& band) const {
-    std::vector<double> sums(kBlock, 0.0);
-    for (int i = 0; i < matrix_.n; ++i)
-      for (int c = 0; c < width; ++c) {
-        const size_t at = static_cast<size_t>(i) * kBlock + c;
-        const double r = AY[at] - band.values[begin + c] * Y[at];
-        sums[c] += r * r;
+  // Vectors `begin` and after of the band, and their residuals.
+  absl::Status WriteBlocks(const RowMajorMatrix& coefficients, size_t begin,
+                           Band& band) {
+    std::array<double*, kTogether> Y, scratch;
+    const int scratch_blocks = std::min(kTogether, team_.threads());
+    for (int i = 0; i < kTogether; ++i)
+      Y[i] = basis_.Block(basis_.num_blocks() + i);
+    for (int i = 0; i < scratch_blocks; ++i)
+      scratch[i] = basis_.Block(basis_.num_blocks() + kTogether + i);
+    basis_.Combine(coefficients, Y);
+    for (int b = 0; b < kTogether; b += scratch_blocks) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      team_.For(std::min(scratch_blocks, kTogether - b), [&](int i) {
+        WriteBlock(begin + (b + i) * kBlock, Y[b + i], scratch[i], band);
+      });
+    }
+    return absl::OkStatus();
+  }
+
+  void WriteBlock(size_t begin, const double* Y, double* residual,
+                  Band& band) const {
+    const size_t count = band.values.size();
+    if (begin >= count) return;
+    const int width = static_cast<int>(std::min<size_t>(kBlock, count - begin));
+    std::array<double, kBlock> lambda{}, sums{};
+    std::copy_n(band.values.begin() + begin, width, lambda.begin());
+    for (int i = 0; i < matrix_.n; ++i) {
+      const double* row = Y + static_cast<size_t>(i) * kBlock;
+      if (request_.precise) {
+        std::copy_n(row, width, &band.precise_vectors[i * count + begin]);
+      } else {
+        std::copy_n(row, width, &band.vectors[i * count + begin]);
       }
+      for (int c = 0; c < kBlock; ++c)
+        residual[static_cast<size_t>(i) * kBlock + c] = lambda[c] * row[c];
+    }
+    matrix_.SubtractProduct(Y, residual);
+    for (size_t i = 0; i < static_cast<size_t>(matrix_.n); ++i)
+      for (int c = 0; c < kBlock; ++c)
+        sums[c] += residual[i * kBlock + c] * residual[i * kBlock + c];
     for (int c = 0; c < width; ++c)
-      band.residual =
-          std::max(band.residual, std::sqrt(sums[c]) /
-                                      std::max(band.values[begin + c], floor_));
+      band.residuals[begin + c] =
+          std::sqrt(sums[c]) / std::max(lambda[c], floor_);
   }
-
-  // The estimate leaves out rounding and the other pairs' share.
-  static constexpr double kResidualSlack = 10;
 
   const SupernodalStructure& matrix_;
   const SupernodalFactor& factor_;
   const BandRequest& request_;
+  Team& team_;
   const CancelToken& cancel_;
   LanczosBasis basis_;
   uint64_t seed_;
@@ -284,6 +351,9 @@ class BandFinder {
   Eigen::MatrixXd tail_;  // R times the last block of every Ritz vector
   Side above_, below_;
   double floor_ = 0;
+  double distance_ = 0;  // the mean one of the eigenvalues
+  int last_look_ = 0;    // blocks there were
+  double last_excess_ = 0;
   int num_above_ = 0, num_below_ = 0;
 };
 
@@ -292,10 +362,11 @@ class BandFinder {
 absl::StatusOr<Band> FindBand(const SupernodalStructure& matrix,
                               const SupernodalFactor& factor,
                               const BandRequest& request,
-                              LanczosWorkspace& workspace,
+                              LanczosWorkspace& workspace, Team& team,
                               const CancelToken& cancel,
                               const StepCallback& on_step) {
-  return BandFinder(matrix, factor, request, workspace, cancel).Find(on_step);
+  return BandFinder(matrix, factor, request, workspace, team, cancel)
+      .Find(on_step);
 }
 
 }  // namespace marrow

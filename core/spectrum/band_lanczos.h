@@ -11,6 +11,7 @@
 #include "core/base/cancel_token.h"
 #include "core/spectrum/aligned_buffer.h"
 #include "core/spectrum/supernodal_factor.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 
@@ -26,6 +27,8 @@ struct BandRequest {
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.
   double tolerance = 0;
+  // Whether the vectors are wanted in double.
+  bool precise = false;
   // Steps beyond those that seem enough, and another start: for a band that
   // was found to lack a pair.
   int extra_steps = 0;
@@ -40,10 +43,12 @@ struct Band {
   // the end may be anywhere.
   double next_below = 0;
   double next_above = 0;
-  // n x values.size(), row-major, orthonormal in double before it was rounded.
+  // n x values.size(), row-major, orthonormal in double; in one of these, as
+  // the request has it.
   std::vector<float> vectors;
-  // The largest residual found, in units of max(lambda, lambda_1).
-  double residual = 0;
+  std::vector<double> precise_vectors;
+  // Of each pair before it was rounded, in units of max(lambda, lambda_1).
+  std::vector<double> residuals;
 };
 
 // Memory that one thread takes from band to band.
@@ -54,14 +59,14 @@ struct LanczosWorkspace {
 // Called after every step.
 using StepCallback = std::function<void()>;
 
-// Finds at least the pairs asked for, more where a cluster wants it. A function
-// of its arguments alone; O(n) memory a vector of the basis, which has two to
-// three times as many as there are pairs. Errors: CANCELLED; INTERNAL where the
+// Finds at least the pairs asked for, more where a cluster wants it. The same
+// bytes whatever the team; O(n) memory a vector of the basis, which has two to
+// four times as many as there are pairs. Errors: CANCELLED; INTERNAL where the
 // pairs do not converge. May throw std::bad_alloc.
 absl::StatusOr<Band> FindBand(const SupernodalStructure& matrix,
                               const SupernodalFactor& factor,
                               const BandRequest& request,
-                              LanczosWorkspace& workspace,
+                              LanczosWorkspace& workspace, Team& team,
                               const CancelToken& cancel,
                               const StepCallback& on_step);
 

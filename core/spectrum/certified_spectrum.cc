@@ -132,7 +132,8 @@ class Certifier {
 
   // Factorises in the gap below `pair`.
   absl::Status FactoriseBelow(int pair) {
-    MARROW_RETURN_IF_ERROR(FactoriseNear(MiddleOfGap(pair), factor_, cancel_));
+    MARROW_RETURN_IF_ERROR(
+        FactoriseNear(MiddleOfGap(pair), factor_, team_, cancel_));
     const int counted = factor_.negative_pivots();
     if (counted != pair && Gap(pair) > kCountableGap * factor_.shift())
       return Disagreement(factor_.shift(), counted, pair);
@@ -201,7 +202,7 @@ class Certifier {
     int pair = count_;
     if (pair == pairs_.eigenvalues.size()) {
       MARROW_RETURN_IF_ERROR(FactoriseNear(
-          spectrum_.eigenvalues[count_ - 1] + margin, factor_, cancel_));
+          spectrum_.eigenvalues[count_ - 1] + margin, factor_, team_, cancel_));
       if (factor_.negative_pivots() < count_)
         return Disagreement(factor_.shift(), factor_.negative_pivots(), count_);
       if (factor_.negative_pivots() > count_) --pair;
@@ -221,6 +222,7 @@ class Certifier {
   const Laplacian& laplacian_;
   const SupernodalStructure& structure_;
   SupernodalFactor factor_;
+  Team team_{1};
   const Eigen::VectorXd sqrt_mass_;
   const double residual_;
   const CancelToken& cancel_;

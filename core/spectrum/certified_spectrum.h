@@ -15,7 +15,7 @@ namespace marrow {
 
 // What a residual of the usual pairs is near, and what one of strict pairs is
 // at most.
-inline constexpr double kUsualResidual = 1e-6;
+inline constexpr double kUsualResidual = 1e-4;
 inline constexpr double kStrictResidual = 1e-8;
 
 // L phi = lambda M phi on the canonical mesh, scaled to area 1. Immutable once

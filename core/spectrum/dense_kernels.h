@@ -5,7 +5,8 @@
 namespace marrow {
 
 // Right-hand sides and Lanczos vectors come in blocks of this many, row-major.
-inline constexpr int kBlock = 16;
+// More would share the reading of a factor; fewer make a smaller basis do.
+inline constexpr int kBlock = 8;
 // Rows of dense panels are padded to multiples of this.
 inline constexpr int kPad = 8;
 

@@ -160,8 +160,13 @@ void UpperSolve(int width, const double* panel, int stride, double* X) {
 }
 
 constexpr DenseKernels KernelsNamed(const char* name) {
-  return {&MultiplyAdd, &MultiplySubtract, &ScatterSubtract, &GatherSubtract,
-          &LowerSolve,  &UpperSolve,       name};
+  return {&MultiplyAdd,
+          &MultiplySubtract,
+          &ScatterSubtract,
+          &GatherSubtract,
+          &LowerSolve,
+          &UpperSolve,
+          name};
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ using EigenvectorMatrix =
 struct EigenPairs {
   // Ascending; entry 0 is the constant pair's, exactly 0.
   Eigen::VectorXd eigenvalues;
-  // n x pairs, a column an eigenvector, M-orthonormal; rounded to this precision
-  // after its residual was certified.
+  // n x pairs, a column an eigenvector, M-orthonormal; rounded to this
+  // precision after its residual was certified.
   EigenvectorMatrix eigenvectors;
   // Area of the canonical mesh in the payload's units: an eigenvalue in those
   // units is lambda / area, an eigenvector phi / sqrt(area).
@@ -47,6 +47,20 @@ struct EigenPairs {
 // computes.
 using ProgressCallback = std::function<void(double)>;
 
+// The pairs of one mesh as far as they are needed. Not thread safe.
+class EigenPairStream {
+ public:
+  virtual ~EigenPairStream() = default;
+
+  // All pairs up to the eigenvalue `bound` and at least one beyond it, or as
+  // many as the stream was opened for; more where more are at hand. A longer
+  // answer begins with the bytes of the shorter ones. Errors: as Get(), and
+  // then the stream is not to be used any more.
+  virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(
+      double bound, const CancelToken& cancel,
+      const ProgressCallback& progress) = 0;
+};
+
 class EigenPairSource {
  public:
   virtual ~EigenPairSource() = default;
@@ -57,6 +71,11 @@ class EigenPairSource {
   virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
       const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
       const ProgressCallback& progress) = 0;
+
+  // What Get() answers, piece by piece for those sources that work so; the
+  // others give all of it at once. `mesh` and this must outlive the stream.
+  virtual std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
+                                                uint32_t count);
 };
 
 }  // namespace marrow

@@ -22,11 +22,12 @@ constexpr double kIndependent = 1e-3;
 absl::Status SolveAll(const SupernodalFactor& factor, const RowMajorMatrix& X,
                       RowMajorMatrix& Y, const CancelToken& cancel) {
   AlignedBuffer buffer(static_cast<size_t>(X.rows()) * kBlock);
+  Team alone(1);
   Eigen::Map<RowMajorMatrix> block(buffer.data(), X.rows(), kBlock);
   for (Eigen::Index begin = 0; begin < X.cols(); begin += kBlock) {
     MARROW_RETURN_IF_ERROR(cancel.Check());
     block = X.middleCols(begin, kBlock);
-    factor.Solve(block.data());
+    factor.Solve(block.data(), alone);
     Y.middleCols(begin, kBlock) = block;
   }
   return absl::OkStatus();

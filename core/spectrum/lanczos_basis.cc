@@ -22,6 +22,28 @@ uint64_t Mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
+// Rows are divided in as many parts whatever the team, so that sums over them
+// are added in the same order.
+constexpr int kParts = 8;
+
+int PartBegin(int n, int part) {
+  return static_cast<int>(static_cast<int64_t>(n) * part / kParts);
+}
+
+// body(rows, offset of the first of them in a block).
+template <typename Body>
+void ForChunks(int n, int part, const Body& body) {
+  const int end = PartBegin(n, part + 1);
+  for (int begin = PartBegin(n, part); begin < end; begin += kChunk)
+    body(std::min(kChunk, end - begin), static_cast<size_t>(begin) * kBlock);
+}
+
+RowMajorMatrix Sum(const std::vector<RowMajorMatrix>& parts) {
+  RowMajorMatrix sum = parts[0];
+  for (size_t i = 1; i < parts.size(); ++i) sum += parts[i];
+  return sum;
+}
+
 }  // namespace
 
 double* LanczosBasis::Block(int index) {
@@ -32,52 +54,65 @@ double* LanczosBasis::Block(int index) {
 
 void LanczosBasis::FillRandomly(double* W, uint64_t seed) const {
   const uint64_t base = Mix(seed);
-  const size_t size = static_cast<size_t>(n_) * kBlock;
-  for (size_t i = 0; i < size; ++i)
-    W[i] = static_cast<double>(static_cast<int64_t>(Mix(base + i))) * 0x1p-63;
+  team_.For(kParts, [&](int part) {
+    const size_t end = static_cast<size_t>(PartBegin(n_, part + 1)) * kBlock;
+    for (size_t i = static_cast<size_t>(PartBegin(n_, part)) * kBlock; i < end;
+         ++i)
+      W[i] = static_cast<double>(static_cast<int64_t>(Mix(base + i))) * 0x1p-63;
+  });
 }
 
-RowMajorMatrix LanczosBasis::Project(const double* W) const {
-  RowMajorMatrix C = RowMajorMatrix::Zero(dimension(), kBlock);
-  for (int begin = 0; begin < n_; begin += kChunk) {
-    const int rows = std::min(kChunk, n_ - begin);
-    const size_t at = static_cast<size_t>(begin) * kBlock;
-    for (int j = 0; j < num_blocks_; ++j)
-      kernels_.multiply_add(kBlock, kBlock, rows,
-                            {blocks_[j].data() + at, 1, kBlock}, W + at, kBlock,
-                            C.data() + j * kBlock * kBlock, kBlock);
-  }
-  return C;
+void LanczosBasis::Copy(int index, double* W) const {
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      std::memcpy(W + at, blocks_[index].data() + at,
+                  sizeof(double) * rows * kBlock);
+    });
+  });
 }
 
-RowMajorMatrix LanczosBasis::SubtractAndGram(const RowMajorMatrix& C,
+RowMajorMatrix LanczosBasis::Project(int first, const double* W) const {
+  std::vector<RowMajorMatrix> sums(kParts,
+                                   RowMajorMatrix::Zero(dimension(), kBlock));
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      for (int j = first; j < num_blocks_; ++j)
+        kernels_.multiply_add(
+            kBlock, kBlock, rows, {blocks_[j].data() + at, 1, kBlock}, W + at,
+            kBlock, sums[part].data() + j * kBlock * kBlock, kBlock);
+    });
+  });
+  return Sum(sums);
+}
+
+RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
                                              double* W) const {
-  RowMajorMatrix gram = RowMajorMatrix::Zero(kBlock, kBlock);
-  for (int begin = 0; begin < n_; begin += kChunk) {
-    const int rows = std::min(kChunk, n_ - begin);
-    const size_t at = static_cast<size_t>(begin) * kBlock;
-    for (int j = 0; j < num_blocks_; ++j)
-      kernels_.multiply_subtract(rows, kBlock, kBlock,
-                                 {blocks_[j].data() + at, kBlock, 1},
-                                 C.data() + j * kBlock * kBlock, kBlock, W + at,
-                                 kBlock);
-    kernels_.multiply_add(kBlock, kBlock, rows, {W + at, 1, kBlock}, W + at,
-                          kBlock, gram.data(), kBlock);
-  }
-  return gram;
+  std::vector<RowMajorMatrix> sums(kParts,
+                                   RowMajorMatrix::Zero(kBlock, kBlock));
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      for (int j = first; j < num_blocks_; ++j)
+        kernels_.multiply_subtract(
+            rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
+            C.data() + j * kBlock * kBlock, kBlock, W + at, kBlock);
+      kernels_.multiply_add(kBlock, kBlock, rows, {W + at, 1, kBlock}, W + at,
+                            kBlock, sums[part].data(), kBlock);
+    });
+  });
+  return Sum(sums);
 }
 
 void LanczosBasis::MultiplyInPlace(const RowMajorMatrix& B, double* W) const {
-  alignas(64) double copy[kChunk * kBlock];
-  for (int begin = 0; begin < n_; begin += kChunk) {
-    const int rows = std::min(kChunk, n_ - begin);
-    double* at = W + static_cast<size_t>(begin) * kBlock;
-    const size_t bytes = sizeof(double) * rows * kBlock;
-    std::memcpy(copy, at, bytes);
-    std::memset(at, 0, bytes);
-    kernels_.multiply_add(rows, kBlock, kBlock, {copy, kBlock, 1}, B.data(),
-                          kBlock, at, kBlock);
-  }
+  team_.For(kParts, [&](int part) {
+    alignas(64) double copy[kChunk * kBlock];
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      const size_t bytes = sizeof(double) * rows * kBlock;
+      std::memcpy(copy, W + at, bytes);
+      std::memset(W + at, 0, bytes);
+      kernels_.multiply_add(rows, kBlock, kBlock, {copy, kBlock, 1}, B.data(),
+                            kBlock, W + at, kBlock);
+    });
+  });
 }
 
 void LanczosBasis::ReplaceColumns(const std::vector<bool>& which,
@@ -90,17 +125,20 @@ void LanczosBasis::ReplaceColumns(const std::vector<bool>& which,
 }
 
 void LanczosBasis::Combine(const RowMajorMatrix& coefficients,
-                           double* Y) const {
-  for (int begin = 0; begin < n_; begin += kChunk) {
-    const int rows = std::min(kChunk, n_ - begin);
-    const size_t at = static_cast<size_t>(begin) * kBlock;
-    std::memset(Y + at, 0, sizeof(double) * rows * kBlock);
-    for (int j = 0; j < num_blocks_; ++j)
-      kernels_.multiply_add(rows, kBlock, kBlock,
-                            {blocks_[j].data() + at, kBlock, 1},
-                            coefficients.data() + j * kBlock * kBlock, kBlock,
-                            Y + at, kBlock);
-  }
+                           std::span<double* const> Y) const {
+  const int ldb = static_cast<int>(coefficients.cols());
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, [&](int rows, size_t at) {
+      for (double* out : Y)
+        std::memset(out + at, 0, sizeof(double) * rows * kBlock);
+      for (int j = 0; j < num_blocks_; ++j)
+        for (size_t b = 0; b < Y.size(); ++b)
+          kernels_.multiply_add(
+              rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
+              coefficients.data() + j * kBlock * ldb + b * kBlock, ldb,
+              Y[b] + at, kBlock);
+    });
+  });
 }
 
 Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
@@ -112,8 +150,7 @@ Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
     scale[c] = gram(c, c) > kVanished * size[c] && gram(c, c) > 0
                    ? 1 / std::sqrt(gram(c, c))
                    : 0;
-  const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * gram * scale.asDiagonal();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   Orthonormaliser result;
   result.B = RowMajorMatrix::Zero(kBlock, kBlock);
@@ -128,6 +165,9 @@ Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
     }
     const Eigen::VectorXd u = eigen.eigenvectors().col(c);
     result.B.col(c) = scale.cwiseProduct(u) / std::sqrt(s);
+    result.magnification =
+        std::max(result.magnification,
+                 result.B.col(c).norm() * std::sqrt(size.maxCoeff()));
     for (int k = 0; k < kBlock; ++k)
       if (scale[k] > 0) result.R(c, k) = std::sqrt(s) * u[k] / scale[k];
   }

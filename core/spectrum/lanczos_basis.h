@@ -4,12 +4,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "core/base/cancel_token.h"
 #include "core/spectrum/aligned_buffer.h"
 #include "core/spectrum/dense_kernels.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 
@@ -17,11 +19,11 @@ using RowMajorMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Orthonormal blocks of kBlock vectors of n entries each, kept in `blocks`,
-// which grows as needed and is the caller's.
+// which grows as needed and is the caller's. The same bytes whatever the team.
 class LanczosBasis {
  public:
-  LanczosBasis(int n, std::vector<AlignedBuffer>& blocks)
-      : n_(n), blocks_(blocks), kernels_(Kernels()) {}
+  LanczosBasis(int n, std::vector<AlignedBuffer>& blocks, Team& team)
+      : n_(n), blocks_(blocks), team_(team), kernels_(Kernels()) {}
 
   int num_blocks() const { return num_blocks_; }
   int dimension() const { return num_blocks_ * kBlock; }
@@ -30,6 +32,7 @@ class LanczosBasis {
   double* Block(int index);
 
   void FillRandomly(double* W, uint64_t seed) const;
+  void Copy(int index, double* W) const;
 
   // What was W in terms of the basis: W = V * projection + Q * remainder, Q the
   // new block.
@@ -44,19 +47,23 @@ class LanczosBasis {
   absl::Status Append(const Fill& fill, const CancelToken& cancel,
                       Growth& growth);
 
-  // Y = V * coefficients; coefficients are dimension() x kBlock.
-  void Combine(const RowMajorMatrix& coefficients, double* Y) const;
+  // Y = V * coefficients, a block for every kBlock columns of these.
+  void Combine(const RowMajorMatrix& coefficients,
+               std::span<double* const> Y) const;
 
  private:
-  // W -= V C and, of what is left, W'W.
-  RowMajorMatrix SubtractAndGram(const RowMajorMatrix& C, double* W) const;
-  RowMajorMatrix Project(const double* W) const;
+  // V'W, and W -= V C and then W'W, for V the blocks from `first` on; C has
+  // rows for all blocks.
+  RowMajorMatrix Project(int first, const double* W) const;
+  RowMajorMatrix SubtractAndGram(int first, const RowMajorMatrix& C,
+                                 double* W) const;
   void MultiplyInPlace(const RowMajorMatrix& B, double* W) const;
   void ReplaceColumns(const std::vector<bool>& which, const double* Z,
                       double* W) const;
 
   const int n_;
   std::vector<AlignedBuffer>& blocks_;
+  Team& team_;
   const DenseKernels& kernels_;
   int num_blocks_ = 0;
 };
@@ -68,7 +75,11 @@ struct Orthonormaliser {
   RowMajorMatrix R;
   std::vector<bool> missing;
   bool complete = true;
+  // How much longer a column of W B is than what rounding left of W in it.
+  double magnification = 0;
 };
+// Orthogonality is kept to about this times the rounding unit.
+inline constexpr double kMostMagnification = 1e5;
 // `size` is the squared length that each column had before it was projected:
 // what is tiny beside it is rounding.
 Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
@@ -78,23 +89,26 @@ template <typename Fill>
 absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
                                   Growth& growth) {
   double* W = Block(num_blocks_);
-  // Twice is enough (Kahan and Parlett), three times after a fill.
-  int passes = 2;
   growth.remainder = RowMajorMatrix::Identity(kBlock, kBlock);
   growth.projection = RowMajorMatrix::Zero(dimension(), kBlock);
+  // The first pass is against all blocks. The second is against W itself, and
+  // against all where the first has magnified rounding; the others follow a
+  // fill.
+  int passes = 2, first = 0;
   for (int pass = 0; pass < passes; ++pass) {
     if (cancel.IsCancelled()) return cancel.Check();
-    const RowMajorMatrix C = Project(W);
+    const RowMajorMatrix C = Project(first, W);
     if (cancel.IsCancelled()) return cancel.Check();
-    const RowMajorMatrix gram = SubtractAndGram(C, W);
-    const Eigen::VectorXd size =
-        C.colwise().squaredNorm().transpose() + gram.diagonal();
-    const Orthonormaliser q = MakeOrthonormaliser(gram, size);
+    const RowMajorMatrix gram = SubtractAndGram(first, C, W);
+    const Orthonormaliser q = MakeOrthonormaliser(
+        gram, C.colwise().squaredNorm().transpose() + gram.diagonal());
     growth.projection += C * growth.remainder;
     growth.remainder = q.R * growth.remainder;
     MultiplyInPlace(q.B, W);
+    first = q.magnification < kMostMagnification ? num_blocks_ : 0;
     if (q.complete || pass > 1) continue;
     passes = 4;
+    first = 0;
     double* Z = Block(num_blocks_ + 1);
     fill(Z);
     ReplaceColumns(q.missing, Z, W);

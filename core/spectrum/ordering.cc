@@ -259,8 +259,8 @@ class Dissection {
     const int size = static_cast<int>(end - begin);
     middle = std::stable_partition(begin, end,
                                    [&](int v) { return part_[v] == kLow; });
-    separator = std::stable_partition(
-        middle, end, [&](int v) { return part_[v] == kHigh; });
+    separator = std::stable_partition(middle, end,
+                                      [&](int v) { return part_[v] == kHigh; });
     for (int* v = begin; v < end; ++v) part_[*v] = 0;
     return middle - begin < size && separator - middle < size &&
            separator > begin;
@@ -285,10 +285,9 @@ absl::StatusOr<std::vector<int>> DissectionOrder(const Graph& graph,
   std::iota(order.begin(), order.end(), 0);
   // A hub would be in every separator: it is one for all.
   const double hub = std::max(64.0, 10 * std::sqrt(n));
-  const auto hubs =
-      std::stable_partition(order.begin(), order.end(), [&](int v) {
-        return graph.start[v + 1] - graph.start[v] <= hub;
-      });
+  const auto hubs = std::stable_partition(
+      order.begin(), order.end(),
+      [&](int v) { return graph.start[v + 1] - graph.start[v] <= hub; });
   for (auto v = hubs; v != order.end(); ++v) dissection.Exclude(*v);
   dissection.Order(order.data(), order.data() + (hubs - order.begin()),
                    threads);

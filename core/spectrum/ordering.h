@@ -23,9 +23,10 @@ struct Graph {
 // separator comes after both halves. `positions` has a row of three a vertex.
 // Vertices with very many neighbours come last. Deterministic, whatever
 // `threads`; O(n log n). Errors: CANCELLED.
-absl::StatusOr<std::vector<int>> DissectionOrder(
-    const Graph& graph, const double* positions, int threads,
-    const CancelToken& cancel);
+absl::StatusOr<std::vector<int>> DissectionOrder(const Graph& graph,
+                                                 const double* positions,
+                                                 int threads,
+                                                 const CancelToken& cancel);
 
 }  // namespace marrow
 

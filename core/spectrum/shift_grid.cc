@@ -11,13 +11,22 @@ namespace marrow {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Mean distance of a surface's eigenvalues, 4 pi (Weyl): the first guess.
-constexpr double kWeylDistance = 12.566370614359172;
-// Pairs below a shift that are too many for one band, in usual bands.
-constexpr double kTooMany = 1.4;
-constexpr double kTooFew = 0.35;
-// The last band reaches as far above its shift.
-constexpr double kLastBand = 0.8;
+// Mean distance of a surface's eigenvalues, 4 pi (Weyl), less where there are
+// few of them and boundaries or long limbs count: the first guess.
+constexpr double kFirstDistance = 10;
+// Pairs below a shift that are too many or too few for a band, in bands.
+constexpr double kTooMany = 1.1;
+constexpr double kTooFew = 0.3;
+// Pairs of the first band, and of the usual ones. Small problems are cheap to
+// factorise, and then the dense work on a basis is most of it; of large ones
+// the basis is most of the memory.
+constexpr int kFirstBand = 12;
+constexpr int kUsualBand = 50;
+constexpr int kSmallBand = 25;
+constexpr int kSmallProblem = 12'000;
+constexpr int kLargeBand = 40;
+constexpr int kLargeProblem = 300'000;
+
 constexpr int kMostTries = 60;
 // An interval of this relative width that holds too many is a cluster.
 constexpr double kClusterWidth = 1e-8;
@@ -27,45 +36,57 @@ constexpr double kStepWidth = 0.05;
 constexpr int kMostNudges = 8;
 constexpr double kNudge = 1e-7;
 
+int UsualBand(int n) {
+  if (n < kSmallProblem) return kSmallBand;
+  return n < kLargeProblem ? kUsualBand : kLargeBand;
+}
+
 }  // namespace
 
-absl::Status FactoriseNear(double shift, SupernodalFactor& factor,
+absl::Status FactoriseNear(double shift, SupernodalFactor& factor, Team& team,
                            const CancelToken& cancel) {
   absl::Status status;
   for (int i = 0; i < kMostNudges; ++i) {
-    status = factor.Compute(shift * (1 + i * kNudge), cancel);
+    status = factor.Compute(shift * (1 + i * kNudge), team, cancel);
     if (status.code() != absl::StatusCode::kFailedPrecondition) return status;
   }
   return absl::InternalError(
       absl::StrCat("the matrix cannot be factorised: ", status.message()));
 }
 
-double ShiftGrid::Guess() const {
-  const double distance =
-      mean_distance_ > 0 ? mean_distance_ : kWeylDistance / 2;
-  const int ahead = covered_ + wanted_ / 2 - last_below_;
-  return last_shift_ + distance * ahead;
+ShiftGrid::ShiftGrid(int n, int most_pairs, const BandRequest& common)
+    : usual_(UsualBand(n)),
+      most_pairs_(most_pairs),
+      common_(common),
+      mean_distance_(kFirstDistance) {}
+
+int ShiftGrid::NextEnd() const {
+  if (covered_ == 0) return kFirstBand;
+  const int past = covered_ + usual_ / 3 - 2;
+  return 2 + usual_ * (past / usual_ + 1);
 }
 
-// Moves the shift until the pairs below it that no band finds yet are as many as
-// a band's. Where more than that are too close to be parted, the shift is left
-// below them and `cluster_end` is the count above them, else 0. Where few pairs
-// are far below very many, the shift is left amid the two and `dense_above`:
-// seen from among the many, the few are lost.
-absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
+double ShiftGrid::Guess(int wanted) const {
+  return last_shift_ + mean_distance_ * (covered_ + wanted / 2 - last_below_);
+}
+
+// Moves the shift until the pairs below it that no band finds yet are as many
+// as a band's. Where more than that are too close to be parted, the shift is
+// left below them and `cluster_end` is the count above them, else 0. Where few
+// pairs are far below very many, the shift is left amid the two and
+// `dense_above`: seen from among the many, the few are lost.
+absl::Status ShiftGrid::Settle(int wanted, SupernodalFactor& factor, Team& team,
                                const CancelToken& cancel, int& cluster_end,
                                bool& dense_above) {
   cluster_end = 0;
   dense_above = false;
-  double low = last_shift_, high = kInfinity, shift = Guess();
+  double low = last_shift_, high = kInfinity, shift = Guess(wanted);
   int high_count = 0, low_count = covered_;
   for (int i = 0; i < kMostTries; ++i) {
-    MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, cancel));
+    MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, team, cancel));
     const int found = factor.negative_pivots() - covered_;
-    const bool too_many = found > kTooMany * wanted_;
-    if (!too_many && (found >= kTooFew * wanted_ ||
-                      factor.negative_pivots() >= pairs_))
-      return absl::OkStatus();
+    const bool too_many = found > kTooMany * wanted;
+    if (!too_many && found >= kTooFew * wanted) return absl::OkStatus();
     if (too_many) {
       high = shift;
       high_count = factor.negative_pivots();
@@ -76,13 +97,14 @@ absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
     if (low_count > covered_ && high - low < kStepWidth * (low - last_shift_)) {
       dense_above = true;
       MARROW_RETURN_IF_ERROR(
-          FactoriseNear(0.5 * (last_shift_ + low), factor, cancel));
+          FactoriseNear(0.5 * (last_shift_ + low), factor, team, cancel));
       if (factor.negative_pivots() == low_count) return absl::OkStatus();
-      return FactoriseNear(low, factor, cancel);
+      return FactoriseNear(low, factor, team, cancel);
     }
     if (high - low < kClusterWidth * high) {
       cluster_end = high_count;
-      return too_many ? FactoriseNear(low, factor, cancel) : absl::OkStatus();
+      return too_many ? FactoriseNear(low, factor, team, cancel)
+                      : absl::OkStatus();
     }
     shift = std::isinf(high) ? last_shift_ + 2 * (shift - last_shift_)
                              : 0.5 * (low + high);
@@ -90,24 +112,27 @@ absl::Status ShiftGrid::Settle(SupernodalFactor& factor,
   return absl::InternalError("no place for a shift was found");
 }
 
-absl::Status ShiftGrid::Plan(SupernodalFactor& factor,
+absl::Status ShiftGrid::Plan(SupernodalFactor& factor, Team& team,
                              const CancelToken& cancel, PlannedBand& band) {
   int cluster_end;
   bool dense_above;
-  MARROW_RETURN_IF_ERROR(Settle(factor, cancel, cluster_end, dense_above));
+  const int end = NextEnd();
+  MARROW_RETURN_IF_ERROR(
+      Settle(end - covered_, factor, team, cancel, cluster_end, dense_above));
   band = PlannedBand();
   band.shift = factor.shift();
   band.below_shift = factor.negative_pivots();
-  band.request.tolerance = tolerance_;
+  band.request = common_;
   band.request.below = band.below_shift - covered_;
   band.request.all_below = covered_ == 0;
   band.request.any_end_below = covered_ == last_below_;
-  const int missing = pairs_ - band.below_shift;
-  int above = missing <= kLastBand * wanted_ ? missing : wanted_ / 2;
-  if (cluster_end > 0) above = std::min(missing, cluster_end - band.below_shift);
+  int above = end - band.below_shift;
+  if (cluster_end > 0) {
+    above = std::min(most_pairs_, cluster_end) - band.below_shift;
+    band.request.any_end_above = cluster_end > most_pairs_;
+  }
   if (dense_above) above = 0;
   band.request.above = std::max(0, above);
-  band.request.any_end_above = cluster_end > pairs_;
   if (band.below_shift > last_below_)
     mean_distance_ =
         (band.shift - last_shift_) / (band.below_shift - last_below_);

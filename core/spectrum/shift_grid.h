@@ -20,40 +20,47 @@ struct PlannedBand {
   BandRequest request;
 };
 
-// Plans the bands of the lowest `pairs` pairs. Each shift is guessed from the
-// counts at those before it, and moved until the count at it fits. Not thread
-// safe; its plan depends on the matrix and its parameters alone.
+// Plans bands, ascending: the first is small, for those who need few pairs, and
+// the following end where the usual counts do (10, 50, 100, 200 ... and the
+// constant pair). Each shift is guessed from the counts at those before it, and
+// moved until the count at it fits. Not thread safe. The plan depends on the
+// matrix and the tolerance alone, not on how many pairs are asked for, with one
+// exception: more equal eigenvalues than a band can have are one band that ends
+// at `most_pairs`.
 class ShiftGrid {
  public:
-  // `wanted` is the size of a usual band.
-  ShiftGrid(int pairs, int wanted, double tolerance)
-      : pairs_(pairs), wanted_(wanted), tolerance_(tolerance) {}
+  ShiftGrid(int n, int most_pairs, const BandRequest& common);
 
-  bool done() const { return covered_ >= pairs_; }
+  // Pairs that the bands planned so far find.
   int covered() const { return covered_; }
+  // About where the last of them is.
+  double Reach() const {
+    return last_shift_ + mean_distance_ * (covered_ - last_below_);
+  }
 
   // The next band; `factor` is left factorised at its shift. Errors: CANCELLED;
-  // INTERNAL where no shift can be found. REQUIRES: !done().
-  absl::Status Plan(SupernodalFactor& factor, const CancelToken& cancel,
-                    PlannedBand& band);
+  // INTERNAL where no shift can be found.
+  absl::Status Plan(SupernodalFactor& factor, Team& team,
+                    const CancelToken& cancel, PlannedBand& band);
 
  private:
-  double Guess() const;
-  absl::Status Settle(SupernodalFactor& factor, const CancelToken& cancel,
-                      int& cluster_end,
+  int NextEnd() const;
+  double Guess(int wanted) const;
+  absl::Status Settle(int wanted, SupernodalFactor& factor, Team& team,
+                      const CancelToken& cancel, int& cluster_end,
                       bool& dense_above);
 
-  const int pairs_;
-  const int wanted_;
-  const double tolerance_;
-  int covered_ = 0;          // pairs that the bands planned so far find
-  double last_shift_ = 0;    // of the band before
-  int last_below_ = 0;       // and its count
-  double mean_distance_ = 0;  // found between the last two shifts; 0: none yet
+  const int usual_;  // pairs of a usual band
+  const int most_pairs_;
+  const BandRequest common_;
+  int covered_ = 0;
+  double last_shift_ = 0;  // of the band before
+  int last_below_ = 0;     // and its count
+  double mean_distance_;   // found between the last two shifts
 };
 
 // Factorises at `shift`, or a little above it where that is an eigenvalue.
-absl::Status FactoriseNear(double shift, SupernodalFactor& factor,
+absl::Status FactoriseNear(double shift, SupernodalFactor& factor, Team& team,
                            const CancelToken& cancel);
 
 }  // namespace marrow

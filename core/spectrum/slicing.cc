@@ -8,7 +8,8 @@
 //     more than the last used of the lower by a gap that both have seen.
 //  3. Were a pair missing in the lower band, its last would be the first of the
 //     upper, and the gap none; likewise the other way round.
-//  4. Beyond the last pair there is a shift of its own, for its count alone.
+//  4. Beyond the last pair found so far, and wherever two bands disagree, there
+//     is a shift of its own, for its count alone.
 #include "core/spectrum/slicing.h"
 
 #include <algorithm>
@@ -31,93 +32,183 @@ namespace {
 
 constexpr int kMostRepairs = 3;
 constexpr auto kReportEvery = std::chrono::milliseconds(20);
-// Steps of a usual band, for progress alone.
-constexpr double kUsualSteps = 12;
-// What the analysis is of the whole.
-constexpr double kAnalysisShare = 0.1;
+// Pairs that a step brings nearer, as a share of a block, and the usual
+// distance of eigenvalues: for progress alone.
+constexpr double kPairsAStep = 0.29 * kBlock;
+constexpr double kUsualDistance = 12;
 
 struct FoundBand {
   PlannedBand plan;
   Band band;
+  std::vector<InertiaCount> counts;
   // Numbers of its pairs, from 0.
   int first() const { return plan.below_shift - band.below; }
-  int end() const {
-    return first() + static_cast<int>(band.values.size());
-  }
+  int end() const { return first() + static_cast<int>(band.values.size()); }
   double Value(int number) const { return band.values[number - first()]; }
 };
 
-class Slicer {
+// Whether `high` goes on where `low` ends.
+bool Agree(const FoundBand& low, const FoundBand& high) {
+  const int split = low.end();
+  if (high.first() > split || high.end() <= split) return false;
+  const double first = high.Value(split);
+  const double gap =
+      std::min(low.band.next_above, first) - low.band.values.back();
+  const double seen = low.band.next_above - low.band.values.back();
+  return gap > 0.5 * seen;
+}
+
+absl::Status OutOfMemory(int n) {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "not enough memory for the eigen-pairs of ", n, " vertices"));
+}
+
+// What one thread, or a team, works with.
+struct Desk {
+  Desk(const SupernodalStructure& matrix, int threads)
+      : factor(matrix), team(threads) {}
+  SupernodalFactor factor;
+  LanczosWorkspace workspace;
+  Team team;
+};
+
+class Slicer : public SpectrumSlicer {
  public:
-  Slicer(const SupernodalStructure& matrix, int pairs,
-         const SlicingOptions& options, const CancelToken& cancel)
-      : matrix_(matrix),
-        pairs_(pairs),
+  Slicer(SupernodalStructure matrix, int most_pairs,
+         const SlicingOptions& options)
+      : matrix_(std::move(matrix)),
         options_(options),
-        cancel_(cancel),
-        grid_(pairs, options.band, options.tolerance) {}
+        workers_(matrix_.branches.empty() ? options.threads : 1),
+        grid_(matrix_.n, most_pairs, CommonRequest(options)) {}
 
-  absl::Status FindBands(const ShareCallback& progress) {
-    std::vector<std::thread> others;
-    for (int t = 1; t < options_.threads; ++t)
-      others.emplace_back([this] { Work(nullptr); });
-    Work(progress);
-    for (std::thread& other : others) other.join();
-    absl::MutexLock lock(&mu_);
-    return status_;
-  }
+  const std::vector<int>& order() const override { return matrix_.order; }
 
-  absl::StatusOr<SlicedSpectrum> Certify() {
-    for (int repair = 0;; ++repair) {
-      std::vector<bool> suspect(bands_.size(), false);
-      std::vector<int> splits;
-      MARROW_RETURN_IF_ERROR(FindSplits(suspect, splits));
-      if (std::find(suspect.begin(), suspect.end(), true) == suspect.end())
-        return Collect(splits);
-      if (repair == kMostRepairs)
-        return absl::InternalError("the count of the eigenvalues disagrees");
-      for (size_t k = 0; k < bands_.size(); ++k)
-        if (suspect[k]) MARROW_RETURN_IF_ERROR(Repair(*bands_[k], repair + 1));
+  absl::StatusOr<std::vector<SpectrumPart>> Find(
+      const PairsWanted& wanted, const CancelToken& cancel,
+      const ShareCallback& progress) override {
+    std::vector<SpectrumPart> parts;
+    try {
+      Report report(*this, wanted, progress);
+      while (!Has(wanted)) {
+        MARROW_RETURN_IF_ERROR(FindMore(wanted, cancel, report));
+        while (certified_ < bands_.size()) parts.push_back(NextPart());
+      }
+    } catch (const std::bad_alloc&) {
+      return OutOfMemory(matrix_.n);
     }
+    return parts;
   }
 
  private:
-  void Work(const ShareCallback& progress) {
-    try {
-      SupernodalFactor factor(matrix_);
-      LanczosWorkspace workspace;
-      while (WorkOnOne(factor, workspace, progress)) {
-      }
-    } catch (const std::bad_alloc&) {
-      Fail(absl::ResourceExhaustedError(
-          absl::StrCat("not enough memory for ", pairs_, " eigen-pairs of ",
-                       matrix_.n, " vertices")));
+  // Work done as a share of what is expected; approaches 1 without reaching it.
+  class Report {
+   public:
+    Report(const Slicer& slicer, const PairsWanted& wanted,
+           const ShareCallback& callback)
+        : done_(slicer.done_), callback_(callback) {
+      const double pairs =
+          std::min<double>(wanted.pairs, 12 + wanted.bound / kUsualDistance);
+      begin_ = std::min(done_.load(), pairs - 1);
+      expected_ = pairs - begin_;
     }
-    if (progress) WaitForOthers(progress);
+    void operator()() {
+      const double share = (done_.load() - begin_) / expected_;
+      const double guess = share < 0.8 ? share : 1 - 0.2 * 0.8 / share;
+      reported_ = std::max(reported_, guess);
+      callback_(reported_);
+    }
+
+   private:
+    const std::atomic<double>& done_;
+    const ShareCallback& callback_;
+    double begin_, expected_;
+    double reported_ = 0;
+  };
+
+  static BandRequest CommonRequest(const SlicingOptions& options) {
+    BandRequest request;
+    request.tolerance = options.tolerance;
+    request.precise = options.precise;
+    return request;
+  }
+
+  int NumPairs() const { return bands_.empty() ? 0 : bands_.back()->end(); }
+
+  bool Has(const PairsWanted& wanted) const {
+    return NumPairs() >= wanted.pairs ||
+           (NumPairs() > 0 && bands_.back()->band.values.back() > wanted.bound);
+  }
+
+  // At least one band more.
+  absl::Status FindMore(const PairsWanted& wanted, const CancelToken& cancel,
+                        Report& report) {
+    const size_t before = bands_.size();
+    const auto enough = [&] {
+      return bands_.size() > before &&
+             (grid_.covered() >= wanted.pairs || grid_.Reach() > wanted.bound);
+    };
+    const Task task{enough, cancel};
+    Desk desk(matrix_, options_.threads / workers_);
+    status_ = absl::OkStatus();
+    finished_ = 0;
+    std::vector<std::thread> others;
+    for (int t = 1; t < workers_; ++t)
+      others.emplace_back([&] { WorkBeside(task); });
+    Work(task, desk, [&] { report(); });
+    WaitForOthers(report);
+    for (std::thread& other : others) other.join();
+    MARROW_RETURN_IF_ERROR(status_);
+    desk.workspace = {};
+    for (size_t k = certified_; k < bands_.size(); ++k)
+      MARROW_RETURN_IF_ERROR(Certify(k, desk, cancel));
+    return absl::OkStatus();
+  }
+
+  struct Task {
+    std::function<bool()> enough;  // to be asked under mu_
+    const CancelToken& cancel;
+  };
+
+  void WorkBeside(const Task& task) {
+    try {
+      Desk desk(matrix_, 1);
+      Work(task, desk, [] {});
+    } catch (const std::bad_alloc&) {
+      Fail(OutOfMemory(matrix_.n));
+    }
     absl::MutexLock lock(&mu_);
     ++finished_;
   }
 
-  bool WorkOnOne(SupernodalFactor& factor, LanczosWorkspace& workspace,
-                 const ShareCallback& progress) {
+  void Work(const Task& task, Desk& desk, const StepCallback& report) {
+    try {
+      while (WorkOnOne(task, desk, report)) {
+      }
+    } catch (const std::bad_alloc&) {
+      Fail(OutOfMemory(matrix_.n));
+    }
+  }
+
+  bool WorkOnOne(const Task& task, Desk& desk, const StepCallback& report) {
     FoundBand* found;
     {
       absl::MutexLock lock(&mu_);
-      if (!status_.ok() || grid_.done()) return false;
+      if (!status_.ok() || task.enough()) return false;
       bands_.push_back(std::make_unique<FoundBand>());
       found = bands_.back().get();
       // Each shift depends on the count at the one before, so this is done by
       // one thread at a time.
-      status_.Update(grid_.Plan(factor, cancel_, found->plan));
+      status_.Update(
+          grid_.Plan(desk.factor, desk.team, task.cancel, found->plan));
       if (!status_.ok()) return false;
     }
-    const BandRequest& request = found->plan.request;
-    const double step = (request.below + request.above) / kUsualSteps;
+    found->counts.push_back({found->plan.shift, found->plan.below_shift});
     absl::StatusOr<Band> band =
-        FindBand(matrix_, factor, request, workspace, cancel_, [&] {
-          done_.store(done_.load() + step);
-          if (progress) Report(progress);
-        });
+        FindBand(matrix_, desk.factor, found->plan.request, desk.workspace,
+                 desk.team, task.cancel, [&] {
+                   done_.store(done_.load() + kPairsAStep);
+                   report();
+                 });
     if (!band.ok()) {
       Fail(band.status());
       return false;
@@ -131,124 +222,98 @@ class Slicer {
     status_.Update(std::move(status));
   }
 
-  void WaitForOthers(const ShareCallback& progress) {
+  void WaitForOthers(Report& report) {
     const auto others_finished = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
-      return finished_ == options_.threads - 1;
+      return finished_ == workers_ - 1;
     };
     absl::MutexLock lock(&mu_);
     while (!mu_.AwaitWithTimeout(absl::Condition(&others_finished),
                                  absl::FromChrono(kReportEvery))) {
       mu_.Unlock();
-      Report(progress);
+      report();
       mu_.Lock();
     }
   }
 
-  // The number of steps is a guess: approaches 1 without reaching it.
-  void Report(const ShareCallback& progress) {
-    const double share = done_.load() / pairs_;
-    const double guess = share < 0.8 ? share : 1 - 0.2 * 0.8 / share;
-    reported_ = std::max(reported_, guess);
-    progress(reported_);
-  }
-
-  // Where each band's pairs end and the next one's begin; marks the bands that
-  // contradict each other or, the last, its count.
-  absl::Status FindSplits(std::vector<bool>& suspect,
-                          std::vector<int>& splits) {
-    for (size_t k = 0; k + 1 < bands_.size(); ++k) {
-      const FoundBand &low = *bands_[k], &high = *bands_[k + 1];
-      splits.push_back(low.end());
-      if (Agree(low, high)) continue;
-      suspect[k] = suspect[k + 1] = true;
+  // Compares band k with its neighbours or, at its upper end, with a count of
+  // its own. The bands before it are certified. Which bands are mended does not
+  // depend on whether the next one is there already.
+  absl::Status Certify(size_t k, Desk& desk, const CancelToken& cancel) {
+    FoundBand& found = *bands_[k];
+    for (int repair = 0;; ++repair) {
+      bool sound = k == 0 || Agree(*bands_[k - 1], found);
+      if (sound && !(k + 1 < bands_.size() && Agree(found, *bands_[k + 1]))) {
+        MARROW_ASSIGN_OR_RETURN(sound, CountsAgree(found, desk, cancel));
+      }
+      if (sound) return absl::OkStatus();
+      if (repair == kMostRepairs)
+        return absl::InternalError("the count of the eigenvalues disagrees");
+      BandRequest request = found.plan.request;
+      request.extra_steps = repair + 1;
+      MARROW_RETURN_IF_ERROR(
+          desk.factor.Compute(found.plan.shift, desk.team, cancel));
+      MARROW_ASSIGN_OR_RETURN(
+          found.band, FindBand(matrix_, desk.factor, request, desk.workspace,
+                               desk.team, cancel, [] {}));
     }
-    const FoundBand& last = *bands_.back();
-    if (!last.plan.request.any_end_above && last.end() < matrix_.n) {
-      const double from = last.band.values.back();
-      const double beyond = std::isfinite(last.band.next_above)
-                                ? 0.5 * (from + last.band.next_above)
-                                : 1.01 * from;
-      SupernodalFactor factor(matrix_);
-      MARROW_RETURN_IF_ERROR(FactoriseNear(beyond, factor, cancel_));
-      if (factor.negative_pivots() != last.end()) suspect.back() = true;
-    }
-    return absl::OkStatus();
   }
 
-  static bool Agree(const FoundBand& low, const FoundBand& high) {
-    const int split = low.end();
-    if (high.first() > split || high.end() <= split) return false;
-    const double first = high.Value(split);
-    const double gap = std::min(low.band.next_above, first) -
-                       low.band.values.back();
-    const double seen = low.band.next_above - low.band.values.back();
-    return gap > 0.5 * seen;
+  // Counts the eigenvalues below the gap that ends a band.
+  absl::StatusOr<bool> CountsAgree(FoundBand& found, Desk& desk,
+                                   const CancelToken& cancel) {
+    if (found.plan.request.any_end_above || found.end() >= matrix_.n)
+      return true;
+    const double from = found.band.values.back();
+    const double next = found.band.next_above;
+    const double beyond =
+        std::isfinite(next) ? 0.5 * (from + next) : 1.01 * from;
+    MARROW_RETURN_IF_ERROR(
+        FactoriseNear(beyond, desk.factor, desk.team, cancel));
+    found.counts.push_back(
+        {desk.factor.shift(), desk.factor.negative_pivots()});
+    return desk.factor.negative_pivots() == found.end();
   }
 
-  absl::Status Repair(FoundBand& found, int attempt) {
-    SupernodalFactor factor(matrix_);
-    LanczosWorkspace workspace;
-    MARROW_RETURN_IF_ERROR(factor.Compute(found.plan.shift, cancel_));
-    BandRequest request = found.plan.request;
-    request.extra_steps = attempt;
-    MARROW_ASSIGN_OR_RETURN(
-        found.band,
-        FindBand(matrix_, factor, request, workspace, cancel_, [] {}));
-    return absl::OkStatus();
+  // Of the first band that was not handed on.
+  SpectrumPart NextPart() {
+    FoundBand& found = *bands_[certified_];
+    const int begin = certified_ == 0 ? 0 : bands_[certified_ - 1]->end();
+    ++certified_;
+    SpectrumPart part;
+    part.first = begin - found.first();
+    part.end = static_cast<int>(found.band.values.size());
+    part.counts = found.counts;
+    part.band = std::move(found.band);
+    found.band.values = part.band.values;
+    return part;
   }
 
-  SlicedSpectrum Collect(const std::vector<int>& splits) {
-    SlicedSpectrum result;
-    result.order = matrix_.order;
-    int number = 0;
-    for (size_t k = 0; k < bands_.size(); ++k) {
-      FoundBand& found = *bands_[k];
-      const int end = k < splits.size() ? splits[k]
-                                        : std::min(pairs_, found.end());
-      const int first = found.first();
-      result.residual = std::max(result.residual, found.band.residual);
-      result.parts.push_back({std::move(found.band), number - first,
-                              std::min(end, pairs_) - first});
-      number = end;
-    }
-    result.ends_in_cluster = bands_.back()->plan.request.any_end_above;
-    return result;
-  }
-
-  const SupernodalStructure& matrix_;
-  const int pairs_;
-  const SlicingOptions& options_;
-  const CancelToken& cancel_;
+  const SupernodalStructure matrix_;
+  const SlicingOptions options_;
+  const int workers_;  // the threads that have a band each
   absl::Mutex mu_;
   ShiftGrid grid_;  // by one thread at a time, under mu_
   std::vector<std::unique_ptr<FoundBand>> bands_;
-  absl::Status status_ ABSL_GUARDED_BY(mu_);
-  int finished_ ABSL_GUARDED_BY(mu_) = 0;
+  size_t certified_ =
+      0;  // bands that were handed on, without their vectors now
+  absl::Status status_;
+  int finished_ = 0;
   std::atomic<double> done_{0};
-  double reported_ = 0;
 };
 
 }  // namespace
 
-absl::StatusOr<SlicedSpectrum> SliceSpectrum(
+absl::StatusOr<std::unique_ptr<SpectrumSlicer>> SpectrumSlicer::Create(
     const Eigen::SparseMatrix<double>& matrix, const double* positions,
-    int pairs, const SlicingOptions& options, const CancelToken& cancel,
-    const ShareCallback& progress) {
+    int most_pairs, const SlicingOptions& options, const CancelToken& cancel) {
   try {
     MARROW_ASSIGN_OR_RETURN(
-        const SupernodalStructure structure,
+        SupernodalStructure structure,
         AnalyseStructure(matrix, positions, options.max_factor_bytes,
                          options.threads, cancel));
-    progress(kAnalysisShare);
-    Slicer slicer(structure, pairs, options, cancel);
-    MARROW_RETURN_IF_ERROR(slicer.FindBands([&](double share) {
-      progress(kAnalysisShare + (1 - kAnalysisShare) * share);
-    }));
-    return slicer.Certify();
+    return std::make_unique<Slicer>(std::move(structure), most_pairs, options);
   } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("not enough memory for ", pairs, " eigen-pairs of ",
-                     matrix.rows(), " vertices"));
+    return OutOfMemory(static_cast<int>(matrix.rows()));
   }
 }
 

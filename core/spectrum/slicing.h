@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -15,42 +17,68 @@ namespace marrow {
 
 struct SlicingOptions {
   int threads = 2;
-  // In units of max(lambda, lambda_1).
-  double tolerance = 1e-6;
-  // Pairs of a usual band.
-  int band = 32;
-  // What one factor may take; there is one a thread.
+  // What the residual of a pair may be, in units of max(lambda, lambda_1).
+  double tolerance = 1e-4;
+  // Whether vectors are kept in double.
+  bool precise = false;
+  // What one factor may take; there is one a thread, or one in all where two
+  // would be too much.
   size_t max_factor_bytes = size_t{1} << 30;
 };
 
-// The bands in ascending order, and from each the pairs `first` up to `end`.
-struct SlicedSpectrum {
-  struct Part {
-    Band band;
-    int first;
-    int end;
-  };
-  std::vector<Part> parts;
-  std::vector<int> order;  // row of a band's vectors -> unknown of the matrix
-  // Whether the last pair may have equals that are not here.
-  bool ends_in_cluster = false;
-  double residual = 0;  // the largest
+// Which of the lowest pairs are wanted: all up to `bound` and one beyond it,
+// but no more than `pairs`.
+struct PairsWanted {
+  int pairs = 0;
+  double bound = std::numeric_limits<double>::infinity();
+};
+
+// So many eigenvalues are below a shift, by inertia.
+struct InertiaCount {
+  double shift = 0;
+  int below = 0;
+};
+
+// Consecutive pairs: those from `first` up to `end` of a band.
+struct SpectrumPart {
+  Band band;
+  int first = 0;
+  int end = 0;
+  // Made inside the band and, beyond the last pair that was found, after it.
+  std::vector<InertiaCount> counts;
 };
 
 // Called with a share of the work, never falling, on the calling thread.
 using ShareCallback = std::function<void(double)>;
 
-// The `pairs` lowest pairs of `matrix`, which is symmetric and positive
-// semi-definite with a full pattern and diagonal; `positions` has a row of
-// three an unknown. That none is missing or twice is certified by the inertia
-// at every shift and beyond the last pair. The same bytes at any number of
-// threads. Errors: CANCELLED; RESOURCE_EXHAUSTED where a factor or the vectors
-// do not fit; INTERNAL where a certificate fails for good. REQUIRES: pairs <
-// matrix.rows(), and that is not tiny (some hundred).
-absl::StatusOr<SlicedSpectrum> SliceSpectrum(
-    const Eigen::SparseMatrix<double>& matrix, const double* positions,
-    int pairs, const SlicingOptions& options, const CancelToken& cancel,
-    const ShareCallback& progress);
+// Finds pairs in ascending order, certified, and goes on from there. Not thread
+// safe; holds some 1 kB an unknown between calls.
+class SpectrumSlicer {
+ public:
+  // `matrix` is symmetric and positive semi-definite with a full pattern and
+  // diagonal, and not tiny (some hundred rows); `positions` has a row of three
+  // an unknown. Neither is kept. No more than `most_pairs` will be asked for,
+  // at most half the rows. Errors: CANCELLED; RESOURCE_EXHAUSTED where a factor
+  // does not fit.
+  static absl::StatusOr<std::unique_ptr<SpectrumSlicer>> Create(
+      const Eigen::SparseMatrix<double>& matrix, const double* positions,
+      int most_pairs, const SlicingOptions& options, const CancelToken& cancel);
+  virtual ~SpectrumSlicer() = default;
+
+  // The parts that follow those found before, until what is wanted is there;
+  // none if it was. That no pair is missing or twice is certified by the
+  // inertia at every shift and beyond the last pair. The same bytes at any
+  // number of threads and in whatever steps they are asked for. Errors:
+  // CANCELLED; RESOURCE_EXHAUSTED; INTERNAL where a certificate fails for good.
+  // After an error this is not to be used. REQUIRES: wanted.pairs <=
+  // most_pairs.
+  virtual absl::StatusOr<std::vector<SpectrumPart>> Find(
+      const PairsWanted& wanted, const CancelToken& cancel,
+      const ShareCallback& progress) = 0;
+
+  // Row of a band's vectors -> unknown of the matrix.
+  virtual const std::vector<int>& order() const = 0;
+};
 
 }  // namespace marrow
 

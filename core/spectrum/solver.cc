@@ -6,9 +6,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
@@ -25,6 +27,8 @@ constexpr int kReferenceVertices = 200'000;
 // Pairs are certified up to this count for a mesh of n vertices; above it the
 // dense solver has to do.
 constexpr double kSlicedShare = 0.5;
+// What the analysis is of the whole.
+constexpr double kAnalysisShare = 0.1;
 
 struct SymmetricProblem {
   Eigen::SparseMatrix<double> A;
@@ -54,79 +58,249 @@ void RemoveConstant(const Eigen::VectorXd& inverse_sqrt_mass,
   }
 }
 
-// The entry of largest magnitude (the first, where several are) is positive,
-// and the constant pair, which is known exactly, is exact.
-void Finish(EigenPairs& pairs) {
-  EigenvectorMatrix& vectors = pairs.eigenvectors;
-  const Eigen::Index count = vectors.cols();
-  Eigen::RowVectorXf largest = Eigen::RowVectorXf::Zero(count);
+template <typename Scalar>
+using Vectors =
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Of the columns from `first` on: the entry of largest magnitude (the first,
+// where several are) is positive. The constant pair, which is known exactly, is
+// exact.
+template <typename Scalar>
+void Finish(Eigen::Index first, Eigen::VectorXd& values,
+            Vectors<Scalar>& vectors) {
+  const Eigen::Index count = vectors.cols() - first;
+  using Row = Eigen::Matrix<Scalar, 1, Eigen::Dynamic>;
+  Row largest = Row::Zero(count);
   for (Eigen::Index v = 0; v < vectors.rows(); ++v)
     for (Eigen::Index k = 0; k < count; ++k)
-      if (std::abs(vectors(v, k)) > std::abs(largest[k]))
-        largest[k] = vectors(v, k);
-  const Eigen::RowVectorXf sign =
-      (largest.array() < 0)
-          .select(Eigen::RowVectorXf::Constant(count, -1),
-                  Eigen::RowVectorXf::Ones(count));
+      if (std::abs(vectors(v, first + k)) > std::abs(largest[k]))
+        largest[k] = vectors(v, first + k);
+  const Row sign =
+      (largest.array() < 0).select(Row::Constant(count, -1), Row::Ones(count));
   for (Eigen::Index v = 0; v < vectors.rows(); ++v)
-    vectors.row(v) = vectors.row(v).cwiseProduct(sign);
+    vectors.row(v).tail(count) = vectors.row(v).tail(count).cwiseProduct(sign);
+  if (first > 0) return;
   vectors.col(0).setOnes();
-  pairs.eigenvalues[0] = 0;
+  values[0] = 0;
 }
 
-void Assign(const MatrixPairs& raw, const Eigen::VectorXd& scale,
-            EigenPairs& pairs) {
-  pairs.eigenvalues = raw.values;
-  pairs.eigenvectors = (scale.asDiagonal() * raw.vectors).cast<float>();
+// Where a part's vectors are.
+const float* VectorsOf(const Band& band, float) { return band.vectors.data(); }
+const double* VectorsOf(const Band& band, double) {
+  return band.precise_vectors.data();
 }
 
-void Assign(SlicedSpectrum raw, const Eigen::VectorXd& scale, int count,
-            EigenPairs& pairs) {
-  pairs.eigenvalues.resize(count);
-  pairs.eigenvectors.resize(scale.size(), count);
-  int column = 0;
-  for (SlicedSpectrum::Part& part : raw.parts) {
-    const int stride = static_cast<int>(part.band.values.size());
-    const int width = part.end - part.first;
+// Appends the parts, in the mesh's order and scaled, but for what is beyond
+// `most` pairs. Empties the parts as it goes.
+template <typename Scalar>
+void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
+            const Eigen::VectorXd& scale, Eigen::Index most,
+            Eigen::VectorXd& values, Vectors<Scalar>& vectors) {
+  Eigen::Index column = values.size(), count = column;
+  for (const SpectrumPart& part : parts) count += part.end - part.first;
+  count = std::min(count, most);
+  values.conservativeResize(count);
+  vectors.conservativeResize(scale.size(), count);
+  for (SpectrumPart& part : parts) {
+    const size_t stride = part.band.values.size();
+    const int width = static_cast<int>(
+        std::min<Eigen::Index>(part.end - part.first, count - column));
     for (int k = 0; k < width; ++k)
-      pairs.eigenvalues[column + k] = part.band.values[part.first + k];
+      values[column + k] = part.band.values[part.first + k];
+    const Scalar* rows = VectorsOf(part.band, Scalar());
     for (Eigen::Index i = 0; i < scale.size(); ++i) {
-      const int v = raw.order[i];
-      const float* row = part.band.vectors.data() + i * stride + part.first;
+      const Scalar* row = rows + i * stride + part.first;
+      const int v = order[i];
       for (int k = 0; k < width; ++k)
-        pairs.eigenvectors(v, column + k) =
-            static_cast<float>(row[k] * scale[v]);
+        vectors(v, column + k) = static_cast<Scalar>(row[k] * scale[v]);
     }
-    part.band.vectors = {};
+    part.band = {};
     column += width;
   }
 }
 
-absl::Status SolveSparse(const TriangleMesh& mesh,
-                         const SymmetricProblem& problem, int count,
-                         double tolerance, const CancelToken& cancel,
-                         const ProgressCallback& progress, EigenPairs& pairs) {
-  const auto report = [&](double share) {
-    if (progress) progress(0.95 * share);
-  };
+SlicingOptions OptionsFor(double tolerance) {
   SlicingOptions options;
   options.tolerance = tolerance;
   options.threads =
       static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
-  absl::StatusOr<SlicedSpectrum> sliced = SliceSpectrum(
-      problem.A, mesh.positions.data(), count, options, cancel, report);
-  if (sliced.ok()) {
-    Assign(*std::move(sliced), problem.inverse_sqrt_mass, count, pairs);
+  return options;
+}
+
+bool IsDense(int n, int pairs) {
+  return n <= kDenseVertices || pairs > kSlicedShare * n;
+}
+
+MatrixPairs SolveDense(const SymmetricProblem& problem, int pairs) {
+  MatrixPairs raw = SolveDensely(problem.A, pairs);
+  RemoveConstant(problem.inverse_sqrt_mass, raw);
+  return raw;
+}
+
+class SolverStream : public EigenPairStream {
+ public:
+  SolverStream(const CanonicalMesh& mesh, uint32_t count, double tolerance)
+      : mesh_(mesh),
+        most_(std::min(static_cast<int>(count) + 1,
+                       static_cast<int>(mesh.mesh.NumVertices()))),
+        tolerance_(tolerance) {}
+
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(
+      double bound, const CancelToken& cancel,
+      const ProgressCallback& progress) override {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    if (!Reaches(bound)) {
+      MARROW_RETURN_IF_ERROR(Prepare(cancel));
+      MARROW_RETURN_IF_ERROR(Extend(bound, cancel, progress));
+    }
+    if (progress) progress(1);
+    return pairs_;
+  }
+
+ private:
+  bool Reaches(double bound) const {
+    if (pairs_ == nullptr) return false;
+    return static_cast<int>(pairs_->NumPairs()) == most_ ||
+           pairs_->eigenvalues[pairs_->NumPairs() - 1] > bound;
+  }
+
+  absl::Status Prepare(const CancelToken& cancel) {
+    if (prepared_) return absl::OkStatus();
+    MARROW_ASSIGN_OR_RETURN(problem_, MakeProblem(mesh_.mesh, cancel));
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    prepared_ = true;
+    if (IsDense(problem_.A.rows(), most_)) return absl::OkStatus();
+    MARROW_ASSIGN_OR_RETURN(
+        slicer_, SpectrumSlicer::Create(problem_.A, mesh_.mesh.positions.data(),
+                                        most_, OptionsFor(tolerance_), cancel));
+    if (problem_.A.rows() > kReferenceVertices) problem_.A = {};
     return absl::OkStatus();
   }
-  if (sliced.status().code() != absl::StatusCode::kInternal ||
-      mesh.NumVertices() > kReferenceVertices)
-    return sliced.status();
-  MARROW_ASSIGN_OR_RETURN(
-      const MatrixPairs raw,
-      SolveByReference(problem.A, count, cancel, [](double) {}));
-  Assign(raw, problem.inverse_sqrt_mass, pairs);
+
+  absl::Status Extend(double bound, const CancelToken& cancel,
+                      const ProgressCallback& progress) {
+    auto pairs = std::make_shared<EigenPairs>();
+    pairs->area = mesh_.report.area;
+    if (pairs_ != nullptr) {
+      pairs->eigenvalues = pairs_->eigenvalues;
+      pairs->eigenvectors = pairs_->eigenvectors;
+    }
+    const Eigen::Index before = pairs->eigenvalues.size();
+    if (slicer_ == nullptr) {
+      Replace(SolveDense(problem_, most_), *pairs);
+    } else {
+      MARROW_RETURN_IF_ERROR(Slice(bound, cancel, progress, *pairs));
+    }
+    Finish(before, pairs->eigenvalues, pairs->eigenvectors);
+    pairs->complete =
+        pairs->eigenvalues.size() == problem_.inverse_sqrt_mass.size();
+    pairs_ = std::move(pairs);
+    return absl::OkStatus();
+  }
+
+  absl::Status Slice(double bound, const CancelToken& cancel,
+                     const ProgressCallback& progress, EigenPairs& pairs) {
+    const auto report = [&](double share) {
+      if (progress) progress(kAnalysisShare + (1 - kAnalysisShare) * share);
+    };
+    auto parts = slicer_->Find({most_, bound}, cancel, report);
+    if (parts.ok()) {
+      Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,
+             most_, pairs.eigenvalues, pairs.eigenvectors);
+      return absl::OkStatus();
+    }
+    if (parts.status().code() != absl::StatusCode::kInternal ||
+        problem_.inverse_sqrt_mass.size() > kReferenceVertices)
+      return parts.status();
+    MARROW_ASSIGN_OR_RETURN(
+        const MatrixPairs raw,
+        SolveByReference(problem_.A, most_, cancel, [](double) {}));
+    Replace(raw, pairs);
+    return absl::OkStatus();
+  }
+
+  // The pairs that are there stay.
+  void Replace(const MatrixPairs& raw, EigenPairs& pairs) const {
+    const Eigen::Index before = pairs.eigenvalues.size();
+    const Eigen::Index more = raw.values.size() - before;
+    pairs.eigenvalues.conservativeResize(before + more);
+    pairs.eigenvalues.tail(more) = raw.values.tail(more);
+    pairs.eigenvectors.conservativeResize(raw.vectors.rows(), before + more);
+    pairs.eigenvectors.rightCols(more) =
+        (problem_.inverse_sqrt_mass.asDiagonal() * raw.vectors.rightCols(more))
+            .cast<float>();
+  }
+
+  const CanonicalMesh& mesh_;
+  const int most_;
+  const double tolerance_;
+  bool prepared_ = false;
+  SymmetricProblem problem_;
+  std::unique_ptr<SpectrumSlicer> slicer_;
+  std::shared_ptr<const EigenPairs> pairs_;
+};
+
+// Bands are orthogonal to each other as far as their residuals go over the gap
+// between them. `ends` are the pairs up to the end of each band; every band is
+// freed of those below it.
+absl::Status OrthogonaliseBands(const std::vector<Eigen::Index>& ends,
+                                const Eigen::VectorXd& mass,
+                                const CancelToken& cancel,
+                                Vectors<double>& vectors) {
+  constexpr Eigen::Index kTogether = 16;
+  for (size_t k = 1; k < ends.size(); ++k)
+    for (Eigen::Index c = ends[k - 1]; c < ends[k]; c += kTogether) {
+      MARROW_RETURN_IF_ERROR(cancel.Check());
+      const auto below = vectors.leftCols(ends[k - 1]);
+      auto some = vectors.middleCols(c, std::min(kTogether, ends[k] - c));
+      const Eigen::MatrixXd products =
+          below.transpose() * (mass.asDiagonal() * some);
+      some.noalias() -= below * products;
+    }
   return absl::OkStatus();
+}
+
+// In the M^-1 norm; of the constant pair 0.
+absl::StatusOr<Eigen::VectorXd> Residuals(const SymmetricProblem& problem,
+                                          const CancelToken& cancel,
+                                          const CertifiedPairs& pairs) {
+  const Eigen::VectorXd& lambda = pairs.eigenvalues;
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(lambda.size());
+  for (Eigen::Index k = 1; k < lambda.size(); ++k) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    const Eigen::VectorXd y =
+        pairs.eigenvectors.col(k).cwiseQuotient(problem.inverse_sqrt_mass);
+    residuals[k] =
+        (problem.A * y - lambda[k] * y).norm() / std::max(lambda[k], lambda[1]);
+  }
+  return residuals;
+}
+
+absl::Status SliceCertified(const SymmetricProblem& problem,
+                            const double* positions, int pairs,
+                            double tolerance, const CancelToken& cancel,
+                            const ShareCallback& report,
+                            CertifiedPairs& result) {
+  SlicingOptions options = OptionsFor(0.5 * tolerance);
+  options.precise = true;
+  MARROW_ASSIGN_OR_RETURN(
+      const auto slicer,
+      SpectrumSlicer::Create(problem.A, positions, pairs, options, cancel));
+  MARROW_ASSIGN_OR_RETURN(std::vector<SpectrumPart> parts,
+                          slicer->Find({pairs}, cancel, report));
+  std::vector<Eigen::Index> ends;
+  for (const SpectrumPart& part : parts) {
+    result.counts.insert(result.counts.end(), part.counts.begin(),
+                         part.counts.end());
+    const Eigen::Index before = ends.empty() ? 0 : ends.back();
+    ends.push_back(
+        std::min<Eigen::Index>(pairs, before + part.end - part.first));
+  }
+  Append(std::move(parts), slicer->order(), problem.inverse_sqrt_mass, pairs,
+         result.eigenvalues, result.eigenvectors);
+  return OrthogonaliseBands(
+      ends, problem.inverse_sqrt_mass.cwiseAbs2().cwiseInverse(), cancel,
+      result.eigenvectors);
 }
 
 }  // namespace
@@ -134,31 +308,50 @@ absl::Status SolveSparse(const TriangleMesh& mesh,
 absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
     const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
     const ProgressCallback& progress) {
-  MARROW_RETURN_IF_ERROR(cancel.Check());
+  return SolverStream(mesh, count, tolerance_)
+      .UpTo(std::numeric_limits<double>::infinity(), cancel, progress);
+}
+
+std::unique_ptr<EigenPairStream> SolverEigenPairSource::Open(
+    const CanonicalMesh& mesh, uint32_t count) {
+  return std::make_unique<SolverStream>(mesh, count, tolerance_);
+}
+
+absl::StatusOr<CertifiedPairs> SolveCertified(
+    const CanonicalMesh& mesh, uint32_t count, double tolerance,
+    const CancelToken& cancel, const ProgressCallback& progress) {
   const int n = static_cast<int>(mesh.mesh.NumVertices());
   const int pairs = std::min(static_cast<int>(count) + 1, n);
   MARROW_ASSIGN_OR_RETURN(const SymmetricProblem problem,
                           MakeProblem(mesh.mesh, cancel));
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  auto result = std::make_shared<EigenPairs>();
-  if (n <= kDenseVertices || pairs > kSlicedShare * n) {
-    MatrixPairs raw = SolveDensely(problem.A, pairs);
-    RemoveConstant(problem.inverse_sqrt_mass, raw);
-    Assign(raw, problem.inverse_sqrt_mass, *result);
+  CertifiedPairs result;
+  result.area = mesh.report.area;
+  if (IsDense(n, pairs)) {
+    const MatrixPairs raw = SolveDense(problem, pairs);
+    result.eigenvalues = raw.values;
+    result.eigenvectors = problem.inverse_sqrt_mass.asDiagonal() * raw.vectors;
   } else {
-    MARROW_RETURN_IF_ERROR(SolveSparse(mesh.mesh, problem, pairs, tolerance_,
-                                       cancel, progress, *result));
+    MARROW_RETURN_IF_ERROR(SliceCertified(
+        problem, mesh.mesh.positions.data(), pairs, tolerance, cancel,
+        [&](double share) {
+          if (progress) progress(0.95 * share);
+        },
+        result));
   }
-  Finish(*result);
-  result->area = mesh.report.area;
-  result->complete = pairs == n;
+  Finish(0, result.eigenvalues, result.eigenvectors);
+  MARROW_ASSIGN_OR_RETURN(result.residuals, Residuals(problem, cancel, result));
+  if (const double worst = result.residuals.maxCoeff(); !(worst <= tolerance))
+    return WithReason(
+        absl::InternalError(absl::StrCat("an eigen-pair has the residual ",
+                                         worst, ", more than ", tolerance)),
+        kReasonSolverNotConverged);
   if (progress) progress(1);
   return result;
 }
 
 double PredictSolverSeconds(uint64_t vertices, uint32_t count) {
   const double n = static_cast<double>(vertices);
-  return 0.02 + n * (1.6e-7 * count + 4e-6);
+  return 0.02 + n * (1e-7 * count + 5e-6);
 }
 
 uint64_t PredictSolverBytes(uint64_t vertices, uint32_t count) {

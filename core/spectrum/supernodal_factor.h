@@ -9,6 +9,7 @@
 #include "core/base/cancel_token.h"
 #include "core/spectrum/aligned_buffer.h"
 #include "core/spectrum/supernodal_structure.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 
@@ -22,41 +23,54 @@ class SupernodalFactor {
   // Factorises A - shift I without pivoting. Errors: CANCELLED;
   // FAILED_PRECONDITION where a pivot vanishes, so `shift` is, but for
   // rounding, an eigenvalue of A or of a leading part of it: try a shift beside
-  // it.
-  absl::Status Compute(double shift, const CancelToken& cancel);
+  // it. May throw std::bad_alloc.
+  absl::Status Compute(double shift, Team& team, const CancelToken& cancel);
 
   double shift() const { return shift_; }
   // By Sylvester's law of inertia, how many eigenvalues of A are below shift().
   int negative_pivots() const { return negative_pivots_; }
 
-  // X = (A - shift I)^-1 X, n rows of kBlock, in the structure's order.
-  void Solve(double* X) const;
+  // X = (A - shift I)^-1 X, a block of n rows in the structure's order.
+  void Solve(double* X, Team& team) const;
 
  private:
   using Supernode = SupernodalStructure::Supernode;
 
-  void Assemble(int index);
+  // What a thread needs to eliminate a run of supernodes.
+  struct Workspace {
+    std::vector<double> stack;   // updates on their way up
+    std::vector<int> waiting;    // whose they are
+    std::vector<double> front;   // the update that is being made
+    std::vector<double> scaled;  // a block of rows of L'
+    int negative_pivots = 0;
+    absl::Status status;
+  };
+
+  absl::Status EliminateRun(int begin, int end, Workspace& work, Team& team,
+                            const CancelToken& cancel);
+  void Assemble(int index, Workspace& work);
   void AddUpdate(const Supernode& child, const double* update,
-                 const Supernode& parent, double* panel, double* front) const;
-  absl::Status Eliminate(const Supernode& node, double* panel, double* front,
+                 const Supernode& parent, double* front);
+  absl::Status Eliminate(const Supernode& node, Workspace& work, Team& team,
                          const CancelToken& cancel);
-  absl::Status EliminateStep(const Supernode& node, double* panel, int begin,
-                             int end, int block_end, double* scaled);
-  void UpdateBelow(const Supernode& node, double* panel, double* front,
-                   int begin, int end, const double* scaled) const;
-  void PushUpdate(const Supernode& node, const double* front);
+  absl::Status EliminateStep(const Supernode& node, int begin, int end,
+                             int block_end, double* scaled,
+                             int& negative_pivots);
+  void UpdateBelow(const Supernode& node, int begin, int end, Workspace& work,
+                   Team& team);
+  void PushUpdate(int index, Workspace& work) const;
+  // `top` is where the rows of the top are, as if row 0 were there too.
+  void SolveDown(const Supernode& node, double* X, double* top) const;
+  void SolveUp(const Supernode& node, double* X) const;
 
   const SupernodalStructure& structure_;
   const DenseKernels& kernels_;
   double shift_ = 0;
   int negative_pivots_ = 0;
   AlignedBuffer panels_;  // rows of L', unit diagonals implied
-  AlignedBuffer stack_;   // updates on their way up
-  AlignedBuffer front_;   // the update that is being made
-  AlignedBuffer scaled_;  // a block of rows of L'
   std::vector<double> inverse_pivots_;
-  std::vector<int> waiting_;  // the supernodes whose updates are on the stack
-  size_t stack_top_ = 0;
+  std::vector<Workspace> branches_;
+  Workspace top_;
 };
 
 }  // namespace marrow

@@ -23,6 +23,11 @@ constexpr double kZeroShare = 0.12;
 constexpr double kSmallShare = 0.3;
 constexpr int kSmallWidth = 24;
 constexpr int kCheckEvery = 1 << 16;
+// Matrices of at least this many rows have branches, none of which has more
+// than the share of the work. A supernode costs so many operations besides.
+constexpr int kBranchedRows = 300'000;
+constexpr double kBranchShare = 0.06;
+constexpr double kRunWork = 4000;
 
 // Lower neighbours (in the new order) of every vertex.
 struct LowerGraph {
@@ -118,9 +123,11 @@ absl::StatusOr<std::vector<int>> ColumnCounts(const LowerGraph& lower,
         ++total;
       }
     if (total > most) {
-      return absl::ResourceExhaustedError(absl::StrCat(
-          "the mesh of ", n, " vertices is too entangled to be factorised: "
-          "more than ", most, " entries; is it a surface?"));
+      return absl::ResourceExhaustedError(
+          absl::StrCat("the mesh of ", n,
+                       " vertices is too entangled to be factorised: "
+                       "more than ",
+                       most, " entries; is it a surface?"));
     }
     if (total - asked > kCheckEvery) {
       asked = total;
@@ -147,9 +154,8 @@ std::vector<Run> LeafRuns(const std::vector<int>& parent,
   for (int v = 0; v < n; ++v) {
     if (size[v] > kLeafColumns) {
       // A column joins the one before if their structures are one.
-      const bool same = !runs.empty() &&
-                        size[v - 1] > kLeafColumns && parent[v - 1] == v &&
-                        counts[v - 1] == counts[v] + 1;
+      const bool same = !runs.empty() && size[v - 1] > kLeafColumns &&
+                        parent[v - 1] == v && counts[v - 1] == counts[v] + 1;
       if (same) {
         ++runs.back().width;
         runs.back().num_rows = counts[v] - 1;
@@ -212,8 +218,6 @@ void PlaceSupernodes(const std::vector<Run>& runs, Structure& s) {
     node.panel = s.panel_doubles;
     rows += run.num_rows;
     s.panel_doubles += node.PanelSize();
-    s.largest_front_rows =
-        std::max(s.largest_front_rows, static_cast<size_t>(run.num_rows));
     s.supernodes.push_back(node);
   }
   s.rows.resize(rows);
@@ -245,6 +249,9 @@ absl::Status FindRows(Structure& s, const CancelToken& cancel) {
       for (int i = 0; i < c.num_rows; ++i) add(s.rows[c.rows + i]);
     }
     std::sort(begin, out);
+    if (k < s.first_top)
+      node.top_rows =
+          static_cast<int>(out - std::lower_bound(begin, out, s.top_column));
     // Leaf runs count their last column's structure, which holds all of it.
     if (out - begin != node.num_rows)
       return absl::InternalError("the symbolic analysis lost count");
@@ -272,9 +279,8 @@ void FindRelative(Structure& s) {
     if (node.parent < 0) continue;
     int cursor = 0;
     for (int i = 0; i < node.num_rows; ++i)
-      s.relative[node.rows + i] =
-          PanelColumn(s, s.supernodes[node.parent], s.rows[node.rows + i],
-                      cursor);
+      s.relative[node.rows + i] = PanelColumn(s, s.supernodes[node.parent],
+                                              s.rows[node.rows + i], cursor);
   }
 }
 
@@ -288,21 +294,6 @@ void FindOffsets(Structure& s) {
             static_cast<size_t>(i - node.first) * node.PanelStride() +
             PanelColumn(s, node, s.columns[e], cursor));
     }
-}
-
-// Updates wait on a stack until their parent takes them.
-void MeasureStack(Structure& s) {
-  std::vector<size_t> waiting(s.supernodes.size(), 0);
-  size_t now = 0;
-  for (size_t k = 0; k < s.supernodes.size(); ++k) {
-    const Structure::Supernode& node = s.supernodes[k];
-    now -= waiting[k];
-    const size_t own = static_cast<size_t>(node.num_rows) *
-                       PadUp(node.num_rows);
-    now += own;
-    if (node.parent >= 0) waiting[node.parent] += own;
-    s.stack_doubles = std::max(s.stack_doubles, now);
-  }
 }
 
 // The upper triangle by rows in the new order.
@@ -326,6 +317,72 @@ void CopyEntries(const Eigen::SparseMatrix<double>& matrix, Structure& s) {
   }
 }
 
+// The run that each run's update goes to, or -1.
+std::vector<int> ParentRuns(const std::vector<Run>& runs,
+                            const std::vector<int>& parent) {
+  std::vector<int> run_of(parent.size());
+  for (size_t k = 0; k < runs.size(); ++k)
+    std::fill_n(run_of.begin() + runs[k].first, runs[k].width,
+                static_cast<int>(k));
+  std::vector<int> result;
+  for (const Run& run : runs) {
+    const int up = parent[run.first + run.width - 1];
+    result.push_back(up < 0 ? -1 : run_of[up]);
+  }
+  return result;
+}
+
+// Chooses branches: the heaviest subtree is cut at its root until none has more
+// than kBranchShare of the work. Moves them before the rest.
+void MoveBranches(const std::vector<int>& parent, std::vector<Run>& runs,
+                  Structure& s) {
+  const int count = static_cast<int>(runs.size());
+  const std::vector<int> up = ParentRuns(runs, parent);
+  std::vector<double> work(count, 0.0);
+  std::vector<int> begin(count);
+  std::iota(begin.begin(), begin.end(), 0);
+  double total = 0;
+  for (int k = 0; k < count; ++k) {
+    const double side = runs[k].width + runs[k].num_rows;
+    work[k] += runs[k].width * side * side + kRunWork;
+    total += runs[k].width * side * side + kRunWork;
+    if (up[k] < 0) continue;
+    work[up[k]] += work[k];
+    begin[up[k]] = std::min(begin[up[k]], begin[k]);
+  }
+  std::vector<bool> is_top(count, false);
+  for (int k = count - 1; k >= 0;) {
+    if (work[k] > kBranchShare * total) {
+      is_top[k--] = true;
+      continue;
+    }
+    s.branches.push_back({begin[k], k + 1});
+    k = begin[k] - 1;
+  }
+  std::reverse(s.branches.begin(), s.branches.end());
+
+  std::vector<Run> moved;
+  std::vector<int> order;
+  const auto take = [&](int k) {
+    Run run = runs[k];
+    for (int c = run.first; c < run.first + run.width; ++c)
+      order.push_back(s.order[c]);
+    run.first = static_cast<int>(order.size()) - run.width;
+    moved.push_back(run);
+  };
+  for (Structure::Branch& branch : s.branches) {
+    const int first = static_cast<int>(moved.size());
+    for (int k = branch.begin; k < branch.end; ++k) take(k);
+    branch = {first, static_cast<int>(moved.size())};
+  }
+  s.first_top = static_cast<int>(moved.size());
+  s.top_column = static_cast<int>(order.size());
+  for (int k = 0; k < count; ++k)
+    if (is_top[k]) take(k);
+  runs = std::move(moved);
+  s.order = std::move(order);
+}
+
 }  // namespace
 
 absl::StatusOr<SupernodalStructure> AnalyseStructure(
@@ -334,8 +391,8 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
   SupernodalStructure s;
   s.n = static_cast<int>(matrix.rows());
   const Graph graph = GraphOf(matrix);
-  MARROW_ASSIGN_OR_RETURN(
-      s.order, DissectionOrder(graph, positions, threads, cancel));
+  MARROW_ASSIGN_OR_RETURN(s.order,
+                          DissectionOrder(graph, positions, threads, cancel));
   // The tree keeps its shape when its vertices are renumbered by postorder.
   const std::vector<int> postorder =
       Postorder(EliminationTree(LowerGraphOf(graph, s.order)));
@@ -348,30 +405,28 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
   MARROW_ASSIGN_OR_RETURN(
       const std::vector<int> counts,
       ColumnCounts(lower, parent, max_factor_bytes / sizeof(double), cancel));
+  std::vector<Run> runs = JoinChains(LeafRuns(parent, counts), parent);
+  if (s.n >= kBranchedRows) MoveBranches(parent, runs, s);
   CopyEntries(matrix, s);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  PlaceSupernodes(JoinChains(LeafRuns(parent, counts), parent), s);
+  PlaceSupernodes(runs, s);
   MARROW_RETURN_IF_ERROR(FindRows(s, cancel));
   FindRelative(s);
   FindOffsets(s);
-  MeasureStack(s);
   return s;
 }
 
-void SupernodalStructure::Multiply(const double* X, double* Y) const {
-  std::fill_n(Y, static_cast<size_t>(n) * kBlock, 0.0);
+void SupernodalStructure::SubtractProduct(const double* X, double* Y) const {
+  const DenseKernels& kernels = Kernels();
   for (int i = 0; i < n; ++i) {
-    const double* x = X + static_cast<size_t>(i) * kBlock;
-    double* y = Y + static_cast<size_t>(i) * kBlock;
-    for (size_t e = row_start[i]; e < row_start[i + 1]; ++e) {
-      const int j = columns[e];
-      const double value = values[e];
-      const double* other_x = X + static_cast<size_t>(j) * kBlock;
-      for (int c = 0; c < kBlock; ++c) y[c] += value * other_x[c];
-      if (j == i) continue;
-      double* other_y = Y + static_cast<size_t>(j) * kBlock;
-      for (int c = 0; c < kBlock; ++c) other_y[c] += value * x[c];
-    }
+    const size_t begin = row_start[i];
+    const int count = static_cast<int>(row_start[i + 1] - begin);
+    const size_t at = static_cast<size_t>(i) * kBlock;
+    kernels.gather_subtract(1, count, {values.data() + begin, 0, 1}, X,
+                            columns.data() + begin, Y + at);
+    // The lower triangle; the diagonal, which comes first, is done.
+    kernels.scatter_subtract(count - 1, 1, {values.data() + begin + 1, 1, 0},
+                             X + at, Y, columns.data() + begin + 1);
   }
 }
 

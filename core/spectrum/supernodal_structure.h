@@ -22,13 +22,14 @@ namespace marrow {
 // triangle, padded to a multiple of kPad, then the rows below them, padded too.
 struct SupernodalStructure {
   struct Supernode {
-    int first;    // column
-    int width;    // columns
-    int parent;   // the supernode that takes its update, or -1
-    int num_rows;      // below the columns
-    size_t rows;       // where they begin in `rows` and `relative`
-    size_t panel;      // where its panel begins, in doubles
-    size_t entries;    // where its entries begin
+    int first;       // column
+    int width;       // columns
+    int parent;      // the supernode that takes its update, or -1
+    int num_rows;    // below the columns
+    int top_rows;    // of a branch's: as many of them are in the top
+    size_t rows;     // where they begin in `rows` and `relative`
+    size_t panel;    // where its panel begins, in doubles
+    size_t entries;  // where its entries begin
     int OwnWidth() const { return PadUp(width); }
     int PanelStride() const { return PadUp(width) + PadUp(num_rows); }
     size_t PanelSize() const {
@@ -36,10 +37,20 @@ struct SupernodalStructure {
     }
   };
 
+  // A subtree that a thread may have for itself: a run of supernodes.
+  struct Branch {
+    int begin;
+    int end;
+  };
+
   int n = 0;
   std::vector<int> order;  // new -> old
-  // Every supernode comes after its children.
+  // Every supernode comes after its children; the branches, which large
+  // matrices have, come first, then the top, which takes their updates.
   std::vector<Supernode> supernodes;
+  std::vector<Branch> branches;
+  int first_top = 0;          // supernode
+  int top_column = 0;         // of the first of those
   std::vector<int> rows;      // ascending within a supernode
   std::vector<int> relative;  // of a row, its column in the parent's panel
   // The upper triangle with the diagonal, in the new order, by rows: entry e of
@@ -49,12 +60,9 @@ struct SupernodalStructure {
   std::vector<double> values;
   std::vector<uint32_t> offsets;  // in the panel of the row's supernode
   size_t panel_doubles = 0;
-  // The most doubles that updates on their way to parents take at once.
-  size_t stack_doubles = 0;
-  size_t largest_front_rows = 0;
 
-  // Y = A X for one block of vectors.
-  void Multiply(const double* X, double* Y) const;
+  // Y -= A X for one block of vectors.
+  void SubtractProduct(const double* X, double* Y) const;
 };
 
 // `matrix` is symmetric with a full pattern and diagonal; `positions` has a row

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -46,6 +48,38 @@ class FakeSolver : public EigenPairSource {
   std::atomic<int> calls{0};
   std::atomic<bool> hold{false};
   std::atomic<bool> fail{false};
+};
+
+// Pairs with the eigenvalues 0, 1, 2 ..., as far as they are needed.
+class CountingStreams : public FakeSolver {
+ public:
+  std::unique_ptr<EigenPairStream> Open(const CanonicalMesh&,
+                                        uint32_t count) override {
+    return std::make_unique<Stream>(*this, count);
+  }
+
+  std::atomic<int> extended{0};
+
+ private:
+  class Stream : public EigenPairStream {
+   public:
+    Stream(CountingStreams& source, uint32_t count)
+        : source_(source), count_(count) {}
+    absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(
+        double bound, const CancelToken& cancel,
+        const ProgressCallback&) override {
+      ++source_.extended;
+      if (cancel.IsCancelled()) return cancel.Check();
+      auto pairs = std::make_shared<EigenPairs>();
+      const double last = std::min<double>(count_, std::floor(bound) + 1);
+      pairs->eigenvalues = Eigen::VectorXd::LinSpaced(last + 1, 0, last);
+      return std::shared_ptr<const EigenPairs>(pairs);
+    }
+
+   private:
+    CountingStreams& source_;
+    const uint32_t count_;
+  };
 };
 
 void WaitUntil(const std::function<bool()>& done) {
@@ -104,7 +138,8 @@ TEST_F(SpectrumCacheTest, CountsAboveTheMeshAreOneRequest) {
 }
 
 TEST_F(SpectrumCacheTest, TheBudgetDropsWhatWasUsedLongestAgo) {
-  // An entry of 10 pairs: 11 doubles and 1,100 floats, somewhat over 4,488 bytes.
+  // An entry of 10 pairs: 11 doubles and 1,100 floats, somewhat over 4,488
+  // bytes.
   SpectrumCache cache(solver_, 11'000);
   ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
   ASSERT_TRUE(Get(cache, MeshNamed(2), 10).ok());
@@ -131,6 +166,54 @@ TEST_F(SpectrumCacheTest, FailuresAreNotKept) {
   solver_->fail = false;
   EXPECT_TRUE(Get(cache, MeshNamed(1), 10).ok());
   EXPECT_EQ(solver_->calls, 2);
+}
+
+TEST_F(SpectrumCacheTest, WhatAStreamFoundIsKeptAndGrows) {
+  auto solver = std::make_shared<CountingStreams>();
+  SpectrumCache cache(solver, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  SpectrumUse use;
+  const auto stream = cache.Open(mesh, 20, use);
+  EXPECT_EQ((*stream->UpTo(4, never_, nullptr))->NumPairs(), 6u);
+  EXPECT_EQ(use.outcome, CacheOutcome::kMiss);
+  EXPECT_EQ(use.solver_runs, 1u);
+  EXPECT_EQ((*stream->UpTo(3, never_, nullptr))->NumPairs(), 6u);
+  EXPECT_EQ(solver->extended, 1);
+  EXPECT_FALSE(cache.Contains(mesh, 20));
+
+  // While the first stream is there, and not computing.
+  SpectrumUse other;
+  EXPECT_EQ(
+      (*cache.Open(mesh, 20, other)->UpTo(4.5, never_, nullptr))->NumPairs(),
+      6u);
+  EXPECT_EQ(other.outcome, CacheOutcome::kHit);
+  EXPECT_EQ(
+      (*cache.Open(mesh, 20, other)->UpTo(9, never_, nullptr))->NumPairs(),
+      11u);
+  EXPECT_EQ(other.outcome, CacheOutcome::kMiss);
+  EXPECT_EQ((*stream->UpTo(8, never_, nullptr))->NumPairs(), 11u);
+  EXPECT_EQ(solver->extended, 2);
+
+  EXPECT_EQ((*Get(cache, mesh, 20))->NumPairs(), 21u);
+  EXPECT_TRUE(cache.Contains(mesh, 20));
+  EXPECT_EQ((*stream->UpTo(100, never_, nullptr))->NumPairs(), 21u);
+  EXPECT_EQ(solver->extended, 3);
+  EXPECT_EQ(use.solver_runs, 1u);
+}
+
+TEST_F(SpectrumCacheTest, ACancelledStreamLeavesWhatItFound) {
+  auto solver = std::make_shared<CountingStreams>();
+  SpectrumCache cache(solver, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  CancelToken cancel;
+  const auto stream = cache.Open(mesh, 20);
+  ASSERT_TRUE(stream->UpTo(4, cancel, nullptr).ok());
+  cancel.Cancel();
+  EXPECT_TRUE(absl::IsCancelled(stream->UpTo(9, cancel, nullptr).status()));
+  const auto next = cache.Open(mesh, 20);
+  EXPECT_EQ((*next->UpTo(4, never_, nullptr))->NumPairs(), 6u);
+  EXPECT_EQ(solver->extended, 2);
+  EXPECT_EQ((*next->UpTo(9, never_, nullptr))->NumPairs(), 11u);
 }
 
 // One caller on a thread of its own.

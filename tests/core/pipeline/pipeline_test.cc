@@ -59,6 +59,47 @@ absl::Status RunWith(const std::string& bytes,
   return Run(bytes, MeshLimits(), options, source, cancel, sink);
 }
 
+class WholeSource : public EigenPairSource {
+ public:
+  absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
+      const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
+      const ProgressCallback& progress) override {
+    return solver_.Get(mesh, count, cancel, progress);
+  }
+
+ protected:
+  SolverEigenPairSource solver_;
+};
+
+// Counts the pairs that were taken from it in pieces.
+class CountedStreams : public WholeSource {
+ public:
+  std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
+                                        uint32_t count) override {
+    return std::make_unique<Stream>(solver_.Open(mesh, count), most);
+  }
+
+  uint32_t most = 0;
+
+ private:
+  class Stream : public EigenPairStream {
+   public:
+    Stream(std::unique_ptr<EigenPairStream> stream, uint32_t& most)
+        : stream_(std::move(stream)), most_(most) {}
+    absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(
+        double bound, const CancelToken& cancel,
+        const ProgressCallback& progress) override {
+      auto pairs = stream_->UpTo(bound, cancel, progress);
+      if (pairs.ok()) most_ = std::max(most_, (*pairs)->NumPairs());
+      return pairs;
+    }
+
+   private:
+    const std::unique_ptr<EigenPairStream> stream_;
+    uint32_t& most_;
+  };
+};
+
 class RunOnAnyShape : public ::testing::TestWithParam<NamedMesh> {};
 
 TEST_P(RunOnAnyShape, KeepsEveryPromise) {
@@ -96,6 +137,40 @@ TEST(PipelineTest, CallsTheSinkInOrder) {
   EXPECT_EQ(run.fractions.back(), 1);
   EXPECT_EQ(run.stages.front(), Stage::kMesh);
   EXPECT_EQ(run.stages.back(), Stage::kSegments);
+}
+
+TEST(PipelineTest, LevelsTakeThePairsTheyNeedAndSayTheSame) {
+  CountedStreams pieces;
+  class Sink : public RecordingSink {
+   public:
+    explicit Sink(const uint32_t& most) : most_(most) {}
+    bool OnLevel(const LevelResult& level) override {
+      most_at_level.push_back(most_);
+      return RecordingSink::OnLevel(level);
+    }
+    std::vector<uint32_t> most_at_level;
+
+   private:
+    const uint32_t& most_;
+  };
+  for (const TriangleMesh& mesh :
+       {LimbCross(4), Apart(LimbCross(3), Icosphere(3))}) {
+    const std::string bytes = EncodeDraco(mesh);
+    SegmentationOptions options;
+    pieces.most = 0;
+    RecordingSink at_once;
+    Sink stepwise(pieces.most);
+    // Has no streams of its own: gives all pairs at once.
+    WholeSource whole;
+    ASSERT_TRUE(RunWith(bytes, options, stepwise, pieces).ok());
+    ASSERT_TRUE(RunWith(bytes, options, at_once, whole).ok());
+    EXPECT_EQ(stepwise.events, at_once.events);
+    ASSERT_GE(stepwise.levels.size(), 2u);
+    for (size_t l = 0; l < stepwise.levels.size(); ++l)
+      EXPECT_EQ(stepwise.levels[l].face_labels, at_once.levels[l].face_labels);
+    EXPECT_LT(stepwise.most_at_level[0], 40u);
+    EXPECT_GT(pieces.most, stepwise.most_at_level[0]);
+  }
 }
 
 TEST(PipelineTest, AMeshThatCannotBeSplitHasOneLevelOfOneNode) {

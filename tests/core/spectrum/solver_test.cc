@@ -17,10 +17,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Tighter than what segmentation takes; the precision of float32 vectors.
+constexpr double kTightTolerance = 1e-6;
+
 std::shared_ptr<const EigenPairs> Solve(const CanonicalMesh& mesh,
-                                        uint32_t count) {
+                                        uint32_t count,
+                                        double tolerance = kSolverTolerance) {
   const CancelToken cancel;
-  return SolverEigenPairSource().Get(mesh, count, cancel, nullptr).value();
+  return SolverEigenPairSource(tolerance)
+      .Get(mesh, count, cancel, nullptr)
+      .value();
 }
 
 Eigen::VectorXd DenseReference(const CanonicalMesh& mesh) {
@@ -33,9 +39,8 @@ Eigen::VectorXd DenseReference(const CanonicalMesh& mesh) {
 
 double WorstOrthonormality(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   const Eigen::MatrixXd vectors = pairs.eigenvectors.cast<double>();
-  const Eigen::MatrixXd products = vectors.transpose() *
-                                   BuildLaplacian(mesh.mesh)->M.asDiagonal() *
-                                   vectors;
+  const Eigen::MatrixXd products =
+      vectors.transpose() * BuildLaplacian(mesh.mesh)->M.asDiagonal() * vectors;
   return (products -
           Eigen::MatrixXd::Identity(products.rows(), products.cols()))
       .cwiseAbs()
@@ -59,7 +64,8 @@ double WorstResidual(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   return worst;
 }
 
-void ExpectSound(const CanonicalMesh& mesh, const EigenPairs& pairs) {
+void ExpectSound(const CanonicalMesh& mesh, const EigenPairs& pairs,
+                 double orthonormality = 1e-6) {
   ASSERT_EQ(pairs.eigenvectors.rows(), mesh.mesh.NumVertices());
   ASSERT_EQ(pairs.eigenvectors.cols(), pairs.eigenvalues.size());
   EXPECT_TRUE(pairs.eigenvectors.allFinite());
@@ -70,9 +76,9 @@ void ExpectSound(const CanonicalMesh& mesh, const EigenPairs& pairs) {
   }
   EXPECT_TRUE((pairs.eigenvectors.col(0).array() == 1).all());
   EXPECT_EQ(pairs.area, mesh.report.area);
-  // Certified to 1e-6 before the vectors were rounded to float32. What the
-  // rounding adds to a residual grows with the largest eigenvalue of the mesh.
-  EXPECT_LE(WorstOrthonormality(mesh, pairs), 1e-6);
+  // Certified before the vectors were rounded to float32. What the rounding
+  // adds to a residual grows with the largest eigenvalue of the mesh.
+  EXPECT_LE(WorstOrthonormality(mesh, pairs), orthonormality);
   EXPECT_LE(WorstResidual(mesh, pairs), 2e-4);
 }
 
@@ -88,13 +94,17 @@ TEST(SolverTest, LanczosMissesNoEigenvalue) {
     SCOPED_TRACE(name);
     const CanonicalMesh canonical = CanonicalOf(mesh);
     ASSERT_GT(canonical.mesh.NumVertices(), 500u);
-    const auto pairs = Solve(canonical, 120);
+    const auto pairs = Solve(canonical, 120, kTightTolerance);
     ASSERT_EQ(pairs->NumPairs(), 121u);
     EXPECT_FALSE(pairs->complete);
     ExpectSound(canonical, *pairs);
     const Eigen::VectorXd exact = DenseReference(canonical);
     for (int k = 1; k <= 120; ++k)
       EXPECT_NEAR(pairs->eigenvalues[k] / exact[k], 1, 1e-8) << k;
+    const auto usual = Solve(canonical, 120);
+    ExpectSound(canonical, *usual, kSolverTolerance);
+    for (int k = 1; k <= 120; ++k)
+      EXPECT_NEAR(usual->eigenvalues[k] / exact[k], 1, 1e-6) << k;
   }
 }
 
@@ -132,8 +142,8 @@ class SolverOnAnyShape : public ::testing::TestWithParam<NamedMesh> {};
 
 TEST_P(SolverOnAnyShape, IsSound) {
   const CanonicalMesh canonical = CanonicalOf(GetParam().mesh);
-  const auto pairs = Solve(canonical, 50);
-  ExpectSound(canonical, *pairs);
+  ExpectSound(canonical, *Solve(canonical, 50, kTightTolerance));
+  ExpectSound(canonical, *Solve(canonical, 50), kSolverTolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SolverOnAnyShape,
@@ -152,6 +162,99 @@ TEST(SolverTest, GivesTheSameBytesTwice) {
   EXPECT_EQ(std::memcmp(a->eigenvectors.data(), b->eigenvectors.data(),
                         sizeof(float) * a->eigenvectors.size()),
             0);
+}
+
+TEST(SolverTest, AnyoneGetsTheSameFirstPairs) {
+  const CanonicalMesh canonical = CanonicalOf(LimbCross(4));
+  const auto all = Solve(canonical, 150);
+  for (uint32_t count : {2, 11, 12, 40, 51, 100}) {
+    const auto few = Solve(canonical, count);
+    ASSERT_EQ(few->NumPairs(), count + 1);
+    EXPECT_EQ(few->eigenvalues, all->eigenvalues.head(count + 1)) << count;
+    EXPECT_EQ(few->eigenvectors, all->eigenvectors.leftCols(count + 1))
+        << count;
+  }
+}
+
+TEST(SolverTest, StreamsGoOnFromWhereTheyAre) {
+  const CancelToken cancel;
+  for (const auto& mesh : {LimbCross(4), Icosphere(1)}) {
+    const CanonicalMesh canonical = CanonicalOf(mesh);
+    const auto all = Solve(canonical, 130);
+    SolverEigenPairSource source;
+    const auto stream = source.Open(canonical, 130);
+    uint32_t before = 0;
+    for (double bound : {0.0, all->eigenvalues[1], all->eigenvalues[20], 1.0,
+                         all->eigenvalues[25], HUGE_VAL}) {
+      const auto pairs = *stream->UpTo(bound, cancel, nullptr);
+      const uint32_t count = pairs->NumPairs();
+      EXPECT_GE(count, before);
+      before = count;
+      if (count < all->NumPairs()) {
+        EXPECT_GT(pairs->eigenvalues[count - 1], bound);
+      }
+      EXPECT_EQ(pairs->eigenvalues, all->eigenvalues.head(count)) << bound;
+      EXPECT_EQ(pairs->eigenvectors, all->eigenvectors.leftCols(count))
+          << bound;
+      EXPECT_EQ(pairs->complete, all->complete);
+    }
+    EXPECT_EQ(before, all->NumPairs());
+  }
+}
+
+TEST(SolverTest, FewPairsAreFoundWithoutTheRest) {
+  const CanonicalMesh canonical = CanonicalOf(LimbCross(4));
+  const CancelToken cancel;
+  SolverEigenPairSource source;
+  const auto pairs = *source.Open(canonical, 200)->UpTo(0, cancel, nullptr);
+  EXPECT_LT(pairs->NumPairs(), 20u);
+}
+
+void ExpectCertified(const CanonicalMesh& mesh, const CertifiedPairs& pairs) {
+  const Laplacian laplacian = *BuildLaplacian(mesh.mesh);
+  const auto& phi = pairs.eigenvectors;
+  const Eigen::MatrixXd products =
+      phi.transpose() * laplacian.M.asDiagonal() * phi;
+  const Eigen::Index count = pairs.eigenvalues.size();
+  EXPECT_LE((products - Eigen::MatrixXd::Identity(count, count))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-10);
+  for (Eigen::Index k = 1; k < count; ++k) {
+    const double lambda = pairs.eigenvalues[k];
+    const Eigen::VectorXd rest = laplacian.L * phi.col(k) -
+                                 lambda * laplacian.M.cwiseProduct(phi.col(k));
+    const double residual =
+        std::sqrt(rest.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) / lambda;
+    EXPECT_LE(residual, kStrictTolerance) << k;
+    EXPECT_NEAR(residual, pairs.residuals[k], 1e-10) << k;
+  }
+  for (const InertiaCount& count : pairs.counts) {
+    if (count.shift > pairs.eigenvalues.tail(1)[0]) continue;
+    EXPECT_EQ((pairs.eigenvalues.array() < count.shift).count(), count.below);
+  }
+}
+
+TEST(SolverTest, StrictPairsComeWithTheirEvidence) {
+  const CancelToken cancel;
+  for (const NamedMesh& shape :
+       {NamedMesh{"sphere", Icosphere(3)}, NamedMesh{"cross", LimbCross(4)},
+        NamedMesh{"small", Icosphere(1)}}) {
+    SCOPED_TRACE(shape.name);
+    const CanonicalMesh mesh = CanonicalOf(shape.mesh);
+    const auto pairs =
+        *SolveCertified(mesh, 120, kStrictTolerance, cancel, nullptr);
+    ExpectCertified(mesh, pairs);
+    const bool dense = mesh.mesh.NumVertices() <= 500;
+    EXPECT_EQ(pairs.counts.empty(), dense);
+    if (!dense) {
+      EXPECT_GE(pairs.counts.back().below, 121);
+    }
+    EXPECT_EQ(pairs.area, mesh.report.area);
+    const Eigen::VectorXd exact = DenseReference(mesh);
+    for (Eigen::Index k = 1; k < pairs.eigenvalues.size(); ++k)
+      EXPECT_NEAR(pairs.eigenvalues[k] / exact[k], 1, 1e-9) << k;
+  }
 }
 
 TEST(SolverTest, ProgressRisesToOne) {
