@@ -73,11 +73,7 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   std::tie(measures[kCurvatureWide], measures[kSaddleWide]) =
       CurvatureAlong(cut, kWideWidth * cut.radius);
   MeasureStrips(cut, measures);
-  const LoopShape shape = ShapeOfLoops(
-      mesh_, adjacency_, unit_, cut.edges,
-      [&](uint32_t f) { return graph.group_of_face()[f] == cut.groups[0]; });
-  measures[kRoundness] = shape.roundness;
-  measures[kLargestLoop] = shape.largest;
+  measures[kLargestLoop] = LargestLoopShare(adjacency_, unit_, cut.edges);
   return measures;
 }
 

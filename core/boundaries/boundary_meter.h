@@ -1,8 +1,8 @@
 // How strong a boundary is: whether people would see two parts there.
 //
-// A cut between parts runs in a loop where the surface is saddle-shaped, and
-// the surface widens beside it. All but the roundness of the loop is seen from
-// inside the surface, so a strength hardly changes when a joint bends.
+// A cut between parts runs in one loop where the surface is saddle-shaped, and
+// the surface widens beside it. All of that is seen from inside the surface, so
+// a strength does not change when a joint bends.
 #ifndef MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 #define MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 
@@ -38,8 +38,7 @@ enum Measure : uint32_t {
   kNearStripOfLarger,
   kWideStripOfSmaller,  // breadth 2 r
   kWideStripOfLarger,
-  kRoundness,    // of the loops that the cut is made of (loops.h): low for a
-  kLargestLoop,  // cut along a limb, high for one around it
+  kLargestLoop,  // share of L that is one connected part (loops.h)
   kNumMeasures
 };
 using Measures = std::array<double, kNumMeasures>;

@@ -1,12 +1,12 @@
-// The calibrated constants of METHOD_MERGE, all of them: fifteen weights, three
-// thresholds, and how pieces are made.
+// The calibrated constants of METHOD_MERGE, all of them: fourteen weights,
+// three thresholds, and how pieces are made.
 //
 // The weights are a logistic regression on human segmentations of articulated
 // bodies: does merging two groups disagree with more people than it agrees
 // with? Its samples are the boundaries met on the best way of merging each
 // body's pieces, and on the way that the weights before took, each weighted by
 // the square root of what the wrong choice would cost. The measures are
-// standardised for the fit, with a ridge of 0.002 of the samples' weight on
+// standardised for the fit, with a ridge of 0.005 of the samples' weight on
 // each slope, so that a measure which hardly helps hardly counts.
 #ifndef MARROW_CORE_BOUNDARIES_CALIBRATION_H_
 #define MARROW_CORE_BOUNDARIES_CALIBRATION_H_
@@ -19,25 +19,22 @@ namespace marrow {
 
 // By Measure. Positive: more of it speaks for keeping the boundary. A short cut
 // off large groups is kept (lengths and areas), most of all where it is one
-// loop along which the surface is a saddle, and beside which it widens. The
-// base of a limb bends such a loop out of the plane in which a cut through its
-// middle would lie: roundness speaks against it.
+// loop along which the surface is a saddle, and beside which it widens.
 inline constexpr Measures kStrengthWeights = {
-    -6.808,  // kConstant
-    -1.439,  // kLength
-    -1.540,  // kRelativeLength
-    0.091,   // kSmallerArea
-    1.464,   // kLargerArea
-    -2.139,  // kCurvatureNear
-    2.729,   // kSaddleNear
-    3.476,   // kCurvatureWide
-    2.798,   // kSaddleWide
-    0.097,   // kNearStripOfSmaller
-    0.020,   // kNearStripOfLarger
-    0.946,   // kWideStripOfSmaller
-    0.428,   // kWideStripOfLarger
-    -1.411,  // kRoundness
-    6.600,   // kLargestLoop
+    -4.881,  // kConstant
+    -1.348,  // kLength
+    -1.491,  // kRelativeLength
+    0.117,   // kSmallerArea
+    1.374,   // kLargerArea
+    -1.484,  // kCurvatureNear
+    2.545,   // kSaddleNear
+    2.297,   // kCurvatureWide
+    2.322,   // kSaddleWide
+    0.190,   // kNearStripOfSmaller
+    -0.024,  // kNearStripOfLarger
+    0.964,   // kWideStripOfSmaller
+    0.531,   // kWideStripOfLarger
+    4.804,   // kLargestLoop
 };
 
 // Levels are the cuts of the merged pieces at these saliences, the same for
