@@ -25,19 +25,15 @@ enum Measure : uint32_t {
   kConstant,        // 1
   kLength,          // log L
   kRelativeLength,  // log (L / sqrt(area of the smaller group))
-  kSmallerArea,     // log (area of the smaller group)
   kLargerArea,      // log (area of the larger group)
   kCurvatureNear,   // mean along the cut of K r^2, within +-5; width r / 4
   kSaddleNear,      // share of the cut where that is below -0.1
-  kCurvatureWide,   // the same two at width r
-  kSaddleWide,
-  // log (area of the strip of that breadth beside the cut, over L times the
-  // breadth): 0 beside a cut through a cylinder, more where the surface
-  // widens. Distances run along edges.
-  kNearStripOfSmaller,  // breadth r / 2, in the smaller group
-  kNearStripOfLarger,
-  kWideStripOfSmaller,  // breadth 2 r
-  kWideStripOfLarger,
+  kSaddleWide,      // the same share at width r
+  // log (area of the strip of breadth 2 r beside the cut, over 2 r L): 0 beside
+  // a cut through a cylinder, more where the surface widens. Distances run
+  // along edges.
+  kStripOfSmaller,  // in the smaller group
+  kStripOfLarger,
   kLargestLoop,  // share of L that is one connected part (loops.h)
   kNumMeasures
 };

@@ -1,5 +1,5 @@
-// The calibrated constants of METHOD_MERGE, all of them: fourteen weights,
-// three thresholds, and how pieces are made.
+// The calibrated constants of METHOD_MERGE, all of them: ten weights, three
+// thresholds, and how pieces are made.
 //
 // The weights are a logistic regression on human segmentations of articulated
 // bodies: does merging two groups disagree with more people than it agrees
@@ -7,7 +7,9 @@
 // body's pieces, and on the way that the weights before took, each weighted by
 // the square root of what the wrong choice would cost. The measures are
 // standardised for the fit, with a ridge of 0.005 of the samples' weight on
-// each slope, so that a measure which hardly helps hardly counts.
+// each slope, so that a measure which hardly helps hardly counts. Measures
+// whose weight would have the wrong sign, or none to speak of, were left out:
+// on other poses, and on rough meshes, they did harm.
 #ifndef MARROW_CORE_BOUNDARIES_CALIBRATION_H_
 #define MARROW_CORE_BOUNDARIES_CALIBRATION_H_
 
@@ -21,26 +23,22 @@ namespace marrow {
 // off large groups is kept (lengths and areas), most of all where it is one
 // loop along which the surface is a saddle, and beside which it widens.
 inline constexpr Measures kStrengthWeights = {
-    -4.881,  // kConstant
-    -1.348,  // kLength
-    -1.491,  // kRelativeLength
-    0.117,   // kSmallerArea
-    1.374,   // kLargerArea
-    -1.484,  // kCurvatureNear
-    2.545,   // kSaddleNear
-    2.297,   // kCurvatureWide
-    2.322,   // kSaddleWide
-    0.190,   // kNearStripOfSmaller
-    -0.024,  // kNearStripOfLarger
-    0.964,   // kWideStripOfSmaller
-    0.531,   // kWideStripOfLarger
-    4.804,   // kLargestLoop
+    -5.089,  // kConstant
+    -1.143,  // kLength
+    -1.620,  // kRelativeLength
+    1.388,   // kLargerArea
+    -0.899,  // kCurvatureNear
+    2.746,   // kSaddleNear
+    1.963,   // kSaddleWide
+    1.111,   // kStripOfSmaller
+    0.470,   // kStripOfLarger
+    4.914,   // kLargestLoop
 };
 
 // Levels are the cuts of the merged pieces at these saliences, the same for
 // every mesh. The second is the automatic cut: boundaries that are kept more
-// likely than 7 to 3, a compromise of the Rand index (least at 0.6) and of the
-// Hamming distance (least at 0.8).
+// likely than 7 to 3, near where the Rand index (0.73) and the Hamming distance
+// (0.8) are least.
 inline constexpr double kLevelSalience[] = {0.93, 0.7, 0.3};
 inline constexpr double kAutomaticSalience = kLevelSalience[1];
 
