@@ -13,9 +13,8 @@ namespace {
 
 constexpr double kCurvatureLimit = 5;
 constexpr double kSaddle = -0.1;
-// Breadths of the strips and widths of the curvature, in units of r.
-constexpr double kNearStrip = 0.5;
-constexpr double kWideStrip = 2;
+// In units of r.
+constexpr double kStripBreadth = 2;
 constexpr double kNearWidth = 0.25;
 constexpr double kWideWidth = 1;
 // Stand for the length, the share or the growth of what has none.
@@ -66,18 +65,12 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   measures[kConstant] = 1;
   measures[kLength] = log_length;
   measures[kRelativeLength] = log_length - 0.5 * std::log(smaller);
-  measures[kSmallerArea] = std::log(smaller);
   measures[kLargerArea] = std::log(larger);
   std::tie(measures[kCurvatureNear], measures[kSaddleNear]) =
       CurvatureAlong(cut, kNearWidth * cut.radius);
-  std::tie(measures[kCurvatureWide], measures[kSaddleWide]) =
-      CurvatureAlong(cut, kWideWidth * cut.radius);
+  measures[kSaddleWide] = CurvatureAlong(cut, kWideWidth * cut.radius).second;
   MeasureStrips(cut, measures);
-  const LoopShape shape = ShapeOfLoops(
-      mesh_, adjacency_, unit_, cut.edges,
-      [&](uint32_t f) { return graph.group_of_face()[f] == cut.groups[0]; });
-  measures[kRoundness] = shape.roundness;
-  measures[kLargestLoop] = shape.largest;
+  measures[kLargestLoop] = LargestLoopShare(adjacency_, unit_, cut.edges);
   return measures;
 }
 
@@ -101,25 +94,19 @@ std::pair<double, double> BoundaryMeter::CurvatureAlong(const Cut& cut,
 
 void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
   const std::vector<uint32_t>& group = cut.graph.group_of_face();
-  flood_.Run(cut.edges, kWideStrip * cut.radius, [&](uint32_t f) {
+  const double breadth = kStripBreadth * cut.radius;
+  flood_.Run(cut.edges, breadth, [&](uint32_t f) {
     return group[f] == cut.groups[0] || group[f] == cut.groups[1];
   });
-  const double breadths[] = {kNearStrip * cut.radius, kWideStrip * cut.radius};
-  double areas[2][2] = {};  // breadth, side
-  for (uint32_t f : flood_.faces()) {
-    const double distance = flood_.DistanceOf(f);
-    const bool side = group[f] == cut.groups[1];
-    for (int i = 0; i < 2; ++i)
-      if (distance < breadths[i]) areas[i][side] += face_areas_[f];
-  }
-  auto growth = [&](int breadth, int side) {
-    const double flat = breadths[breadth] * cut.length;
-    return std::log(std::max(kLeastGrowth, areas[breadth][side] / flat));
+  double areas[2] = {};
+  for (uint32_t f : flood_.faces())
+    if (flood_.DistanceOf(f) < breadth)
+      areas[group[f] == cut.groups[1]] += face_areas_[f];
+  auto growth = [&](double area) {
+    return std::log(std::max(kLeastGrowth, area / (breadth * cut.length)));
   };
-  measures[kNearStripOfSmaller] = growth(0, 0);
-  measures[kNearStripOfLarger] = growth(0, 1);
-  measures[kWideStripOfSmaller] = growth(1, 0);
-  measures[kWideStripOfLarger] = growth(1, 1);
+  measures[kStripOfSmaller] = growth(areas[0]);
+  measures[kStripOfLarger] = growth(areas[1]);
 }
 
 }  // namespace marrow

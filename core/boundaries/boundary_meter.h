@@ -1,8 +1,8 @@
 // How strong a boundary is: whether people would see two parts there.
 //
-// A cut between parts runs in a loop where the surface is saddle-shaped, and
-// the surface widens beside it. All but the roundness of the loop is seen from
-// inside the surface, so a strength hardly changes when a joint bends.
+// A cut between parts runs in one loop where the surface is saddle-shaped, and
+// the surface widens beside it. All of that is seen from inside the surface, so
+// a strength does not change when a joint bends.
 #ifndef MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 #define MARROW_CORE_BOUNDARIES_BOUNDARY_METER_H_
 
@@ -25,21 +25,16 @@ enum Measure : uint32_t {
   kConstant,        // 1
   kLength,          // log L
   kRelativeLength,  // log (L / sqrt(area of the smaller group))
-  kSmallerArea,     // log (area of the smaller group)
   kLargerArea,      // log (area of the larger group)
   kCurvatureNear,   // mean along the cut of K r^2, within +-5; width r / 4
   kSaddleNear,      // share of the cut where that is below -0.1
-  kCurvatureWide,   // the same two at width r
-  kSaddleWide,
-  // log (area of the strip of that breadth beside the cut, over L times the
-  // breadth): 0 beside a cut through a cylinder, more where the surface
-  // widens. Distances run along edges.
-  kNearStripOfSmaller,  // breadth r / 2, in the smaller group
-  kNearStripOfLarger,
-  kWideStripOfSmaller,  // breadth 2 r
-  kWideStripOfLarger,
-  kRoundness,    // of the loops that the cut is made of (loops.h): low for a
-  kLargestLoop,  // cut along a limb, high for one around it
+  kSaddleWide,      // the same share at width r
+  // log (area of the strip of breadth 2 r beside the cut, over 2 r L): 0 beside
+  // a cut through a cylinder, more where the surface widens. Distances run
+  // along edges.
+  kStripOfSmaller,  // in the smaller group
+  kStripOfLarger,
+  kLargestLoop,  // share of L that is one connected part (loops.h)
   kNumMeasures
 };
 using Measures = std::array<double, kNumMeasures>;

@@ -1,4 +1,4 @@
-// The calibrated constants of METHOD_MERGE, all of them: fifteen weights, three
+// The calibrated constants of METHOD_MERGE, all of them: ten weights, three
 // thresholds, and how pieces are made.
 //
 // The weights are a logistic regression on human segmentations of articulated
@@ -6,8 +6,10 @@
 // with? Its samples are the boundaries met on the best way of merging each
 // body's pieces, and on the way that the weights before took, each weighted by
 // the square root of what the wrong choice would cost. The measures are
-// standardised for the fit, with a ridge of 0.002 of the samples' weight on
-// each slope, so that a measure which hardly helps hardly counts.
+// standardised for the fit, with a ridge of 0.005 of the samples' weight on
+// each slope, so that a measure which hardly helps hardly counts. Measures
+// whose weight would have the wrong sign, or none to speak of, were left out:
+// on other poses, and on rough meshes, they did harm.
 #ifndef MARROW_CORE_BOUNDARIES_CALIBRATION_H_
 #define MARROW_CORE_BOUNDARIES_CALIBRATION_H_
 
@@ -19,31 +21,24 @@ namespace marrow {
 
 // By Measure. Positive: more of it speaks for keeping the boundary. A short cut
 // off large groups is kept (lengths and areas), most of all where it is one
-// loop along which the surface is a saddle, and beside which it widens. The
-// base of a limb bends such a loop out of the plane in which a cut through its
-// middle would lie: roundness speaks against it.
+// loop along which the surface is a saddle, and beside which it widens.
 inline constexpr Measures kStrengthWeights = {
-    -6.808,  // kConstant
-    -1.439,  // kLength
-    -1.540,  // kRelativeLength
-    0.091,   // kSmallerArea
-    1.464,   // kLargerArea
-    -2.139,  // kCurvatureNear
-    2.729,   // kSaddleNear
-    3.476,   // kCurvatureWide
-    2.798,   // kSaddleWide
-    0.097,   // kNearStripOfSmaller
-    0.020,   // kNearStripOfLarger
-    0.946,   // kWideStripOfSmaller
-    0.428,   // kWideStripOfLarger
-    -1.411,  // kRoundness
-    6.600,   // kLargestLoop
+    -5.089,  // kConstant
+    -1.143,  // kLength
+    -1.620,  // kRelativeLength
+    1.388,   // kLargerArea
+    -0.899,  // kCurvatureNear
+    2.746,   // kSaddleNear
+    1.963,   // kSaddleWide
+    1.111,   // kStripOfSmaller
+    0.470,   // kStripOfLarger
+    4.914,   // kLargestLoop
 };
 
 // Levels are the cuts of the merged pieces at these saliences, the same for
 // every mesh. The second is the automatic cut: boundaries that are kept more
-// likely than 7 to 3, a compromise of the Rand index (least at 0.6) and of the
-// Hamming distance (least at 0.8).
+// likely than 7 to 3, near where the Rand index (0.73) and the Hamming distance
+// (0.8) are least.
 inline constexpr double kLevelSalience[] = {0.93, 0.7, 0.3};
 inline constexpr double kAutomaticSalience = kLevelSalience[1];
 

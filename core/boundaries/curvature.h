@@ -2,6 +2,7 @@
 #ifndef MARROW_CORE_BOUNDARIES_CURVATURE_H_
 #define MARROW_CORE_BOUNDARIES_CURVATURE_H_
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,12 +19,15 @@ Positions UnitAreaPositions(const TriangleMesh& mesh);
 
 // Gaussian curvature of a mesh of area 1, smoothed over the surface.
 //
-// The angle defects K (2 pi less the angles around a vertex) are spread by one
-// implicit step of heat flow, (M + w^2 L) k = K, for widths w that double from
-// kLeastWidth on. A step keeps the total and makes neither a new maximum nor a
-// new minimum. It uses edge lengths alone, so bending changes nothing. Vertices
-// at a boundary of the mesh or at an edge of three or more faces have no
-// defect.
+// The angle defects K (2 pi less the angles around a vertex) are spread by
+// implicit steps of heat flow, (M + (w'^2 - w^2) L) k' = M k, from each width w
+// to the next, w', which is twice as wide, from 0 and kLeastWidth on. A step
+// keeps the total and makes neither a new maximum nor a new minimum on meshes
+// without obtuse angles. It uses edge lengths alone, so bending changes
+// nothing. Vertices at a boundary of the mesh or at an edge of three or more
+// faces have no defect. Widths at which there is hardly anything but noise (the
+// total of |K| falls too fast towards the next) have the values of the first
+// that is wider.
 //
 // Immutable, hence thread safe.
 class Curvature {
@@ -42,6 +46,9 @@ class Curvature {
   double At(uint32_t vertex, double width) const;
 
  private:
+  // `total` of |K| over the surface, at each width.
+  void DropNoise(const std::array<double, kNumWidths>& total);
+
   // Vertex v at width i is entry v * kNumWidths + i.
   std::vector<double> values_;
 };

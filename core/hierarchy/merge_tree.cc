@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <span>
+#include <utility>
 
 #include "core/base/status_macros.h"
 #include "core/boundaries/boundary_meter.h"
@@ -19,10 +20,16 @@ namespace {
 // The finding of the pieces takes about this share of the time.
 constexpr double kPiecesDone = 0.7;
 
-// Face -> piece: the leaves of the paper's tree, numbered from 0.
-absl::StatusOr<std::vector<uint32_t>> FindPieces(
-    const SplitContext& context, const SplitOptions& options, double mesh_area,
-    const CancelToken& cancel, const std::function<void(double)>& progress) {
+// The leaves of the paper's tree.
+struct Pieces {
+  std::vector<uint32_t> of_face;  // numbered from 0
+  StopReason stop_reason;         // of the whole body
+};
+
+absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
+                                  const SplitOptions& options, double mesh_area,
+                                  const CancelToken& cancel,
+                                  const std::function<void(double)>& progress) {
   TreeBuilder builder(context, options, mesh_area);
   for (uint32_t level = 0; level < kPieceLevels; ++level) {
     MARROW_ASSIGN_OR_RETURN(
@@ -37,7 +44,7 @@ absl::StatusOr<std::vector<uint32_t>> FindPieces(
   for (uint32_t& p : piece)
     p = static_cast<uint32_t>(
         std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());
-  return piece;
+  return Pieces{std::move(piece), builder.tree().nodes[0].stop_reason};
 }
 
 }  // namespace
@@ -50,8 +57,8 @@ absl::StatusOr<MergeTree> BuildMergeTree(
   split.kappa = kPieceKappa;
   MergeTree result;
   MARROW_ASSIGN_OR_RETURN(
-      result.piece_of_face,
-      FindPieces(context, split, mesh_area, cancel, progress));
+      Pieces pieces, FindPieces(context, split, mesh_area, cancel, progress));
+  result.piece_of_face = std::move(pieces.of_face);
   MARROW_ASSIGN_OR_RETURN(
       const Curvature curvature,
       Curvature::Measure(context.mesh, context.adjacency, cancel));
@@ -70,6 +77,8 @@ absl::StatusOr<MergeTree> BuildMergeTree(
       result.tree,
       BuildLevelTree(context, split, mesh_area, result.piece_of_face,
                      result.order, std::span(kLevelSalience, count), cancel));
+  if (pieces.stop_reason != StopReason::kNone)
+    result.tree.nodes[0].stop_reason = pieces.stop_reason;
   progress(1);
   return result;
 }

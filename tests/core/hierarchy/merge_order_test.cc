@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/boundaries/calibration.h"
 #include "core/boundaries/curvature.h"
 #include "core/operators/laplacian.h"
 #include "gmock/gmock.h"
@@ -71,7 +72,7 @@ TEST(MergePiecesTest, CutsThroughBallsGoFirstAndTheNeckStays) {
   ASSERT_EQ(order.merges.size(), 5u);
   EXPECT_TRUE(std::ranges::is_sorted(order.merges, {}, &PieceMerge::salience));
   EXPECT_THAT(order.CutInto(2), ElementsAre(0, 0, 0, 3, 3, 3));
-  EXPECT_GT(order.merges[4].salience, 0.9);
+  EXPECT_GT(order.merges[4].salience, kAutomaticSalience);
   EXPECT_LT(order.merges[0].salience, 0.5);
 }
 
