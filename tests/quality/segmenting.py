@@ -18,9 +18,6 @@ BIN = pathlib.Path(os.environ.get("MARROW_BIN", ROOT / "build/release/bin"))
 
 PARAMETERS = ["--method", "merge"]
 
-# The files STEM.CUT.seg and STEM.CUT.png of the automatic cut.
-AUTOMATIC_CUT = "level-2"
-
 MESH_SUFFIXES = {".off", ".obj", ".ply", ".stl", ".glb", ".gltf", ".drc"}
 
 
@@ -76,17 +73,25 @@ def write_labels(path, labels):
     path.write_text("".join(f"{label}\n" for label in labels))
 
 
-def cut_labels(folder, stem, cut=AUTOMATIC_CUT):
-    """A label a face of the file, of a cut or level that marrow wrote."""
+def read_answer(folder, stem):
+    return json.loads((folder / f"{stem}.json").read_text("utf-8"))
+
+
+def automatic_cut(folder, stem):
+    """What the files STEM.CUT.seg and STEM.CUT.png of the automatic cut have
+    for CUT."""
+    return f"level-{read_answer(folder, stem)['automatic_cut']['level']}"
+
+
+def cut_labels(folder, stem, cut=None):
+    """A label a face of the file, of a cut or level that marrow wrote; of the
+    automatic cut where none is named."""
+    cut = cut or automatic_cut(folder, stem)
     return read_labels(folder / f"{stem}.{cut}.seg")
 
 
 def deepest_level(answer):
     return answer["levels"][-1]["level"]
-
-
-def read_answer(folder, stem):
-    return json.loads((folder / f"{stem}.json").read_text("utf-8"))
 
 
 def commit():
