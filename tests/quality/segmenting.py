@@ -18,6 +18,9 @@ BIN = pathlib.Path(os.environ.get("MARROW_BIN", ROOT / "build/release/bin"))
 
 PARAMETERS = ["--method", "merge"]
 
+# The files STEM.CUT.seg and STEM.CUT.png of the automatic cut.
+AUTOMATIC_CUT = "cut"
+
 MESH_SUFFIXES = {".off", ".obj", ".ply", ".stl", ".glb", ".gltf", ".drc"}
 
 
@@ -77,16 +80,8 @@ def read_answer(folder, stem):
     return json.loads((folder / f"{stem}.json").read_text("utf-8"))
 
 
-def automatic_cut(folder, stem):
-    """What the files STEM.CUT.seg and STEM.CUT.png of the automatic cut have
-    for CUT."""
-    return f"level-{read_answer(folder, stem)['automatic_cut']['level']}"
-
-
-def cut_labels(folder, stem, cut=None):
-    """A label a face of the file, of a cut or level that marrow wrote; of the
-    automatic cut where none is named."""
-    cut = cut or automatic_cut(folder, stem)
+def cut_labels(folder, stem, cut=AUTOMATIC_CUT):
+    """A label a face of the file, of a cut or level that marrow wrote."""
     return read_labels(folder / f"{stem}.{cut}.seg")
 
 

@@ -78,9 +78,8 @@ def page(entries):
 
 def entry(path, folder):
     count = len(set(segmenting.cut_labels(folder, path.stem)))
-    cut = segmenting.automatic_cut(folder, path.stem)
     return (f"{path.stem}: {count} segments",
-            folder / f"{path.stem}.{cut}.png")
+            folder / f"{path.stem}.{segmenting.AUTOMATIC_CUT}.png")
 
 
 def main():
