@@ -19,7 +19,7 @@ BIN = pathlib.Path(os.environ.get("MARROW_BIN", ROOT / "build/release/bin"))
 PARAMETERS = ["--method", "merge"]
 
 # The files STEM.CUT.seg and STEM.CUT.png of the automatic cut.
-AUTOMATIC_CUT = "level-2"
+AUTOMATIC_CUT = "cut"
 
 MESH_SUFFIXES = {".off", ".obj", ".ply", ".stl", ".glb", ".gltf", ".drc"}
 
@@ -76,6 +76,10 @@ def write_labels(path, labels):
     path.write_text("".join(f"{label}\n" for label in labels))
 
 
+def read_answer(folder, stem):
+    return json.loads((folder / f"{stem}.json").read_text("utf-8"))
+
+
 def cut_labels(folder, stem, cut=AUTOMATIC_CUT):
     """A label a face of the file, of a cut or level that marrow wrote."""
     return read_labels(folder / f"{stem}.{cut}.seg")
@@ -83,10 +87,6 @@ def cut_labels(folder, stem, cut=AUTOMATIC_CUT):
 
 def deepest_level(answer):
     return answer["levels"][-1]["level"]
-
-
-def read_answer(folder, stem):
-    return json.loads((folder / f"{stem}.json").read_text("utf-8"))
 
 
 def commit():

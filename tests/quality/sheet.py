@@ -78,8 +78,8 @@ def page(entries):
 
 def entry(path, folder):
     count = len(set(segmenting.cut_labels(folder, path.stem)))
-    picture = folder / f"{path.stem}.{segmenting.AUTOMATIC_CUT}.png"
-    return f"{path.stem}: {count} segments", picture
+    return (f"{path.stem}: {count} segments",
+            folder / f"{path.stem}.{segmenting.AUTOMATIC_CUT}.png")
 
 
 def main():

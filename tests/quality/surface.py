@@ -33,7 +33,8 @@ def read_coloured(path):
     header, body = data.split(b"end_header\n", 1)
     counts = [int(line.split()[2]) for line in header.decode().splitlines()
               if line.startswith("element")]
-    point = numpy.dtype([("at", "<f4", 3), ("colour", "u1", 3)])
+    width = "<f8" if b"property double x\n" in header else "<f4"
+    point = numpy.dtype([("at", width, 3), ("colour", "u1", 3)])
     face = numpy.dtype([("corners", "u1"), ("at", "<i4", 3),
                         ("colour", "u1", 3)])
     if len(body) != counts[0] * point.itemsize + counts[1] * face.itemsize:
@@ -50,7 +51,7 @@ def write_off(path, surface):
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="ascii") as file:
         file.write(f"OFF\n{len(points)} {len(faces)} 0\n")
-        numpy.savetxt(file, points, fmt="%.9g")
+        numpy.savetxt(file, points, fmt="%.17g")
         numpy.savetxt(file, numpy.insert(faces, 0, 3, axis=1), fmt="%d")
 
 

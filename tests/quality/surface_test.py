@@ -26,8 +26,19 @@ class SurfaceTest(unittest.TestCase):
         surfaces.write_off(path, self.surface)
         points, faces = surfaces.read_off(path)
         self.assertEqual(len(faces), 5000)
-        numpy.testing.assert_allclose(points, self.surface[0], rtol=1e-8)
+        numpy.testing.assert_array_equal(points, self.surface[0])
         numpy.testing.assert_array_equal(faces, self.surface[1])
+
+    def test_a_coloured_mesh_is_read_whatever_its_precision(self):
+        points, faces = self.surface
+        folder = pathlib.Path(self.folder.name)
+        single = points.astype(numpy.float32).astype(numpy.float64)
+        for name, exact in (("double", points / 3), ("single", single)):
+            path = folder / f"{name}.off"
+            surfaces.write_off(path, (exact, faces))
+            segmenting.segment([path], folder, "--levels", "1")
+            read = surfaces.read_coloured(folder / f"{name}.level-1.ply")
+            numpy.testing.assert_array_equal(read[0][read[1]], exact[faces])
 
     def test_noise_is_as_strong_as_asked(self):
         points, faces = surfaces.add_noise(self.surface, 0.5)
