@@ -47,6 +47,10 @@ constexpr double kFirstLook = 2;
 // unseen.
 constexpr double kUsualRate = 1;
 constexpr double kTrustedShare = 0.8;
+// A basis of more than so many vectors a pair grows by this share between
+// looks, whose cost is cubic: many equal eigenvalues take a basis that large.
+constexpr int kSlow = 3;
+constexpr int kSlowLooks = 4;
 constexpr double kMostExcess = 6;
 // Blocks written at once, so that the basis is read once for them.
 constexpr int kTogether = 3;
@@ -157,7 +161,10 @@ class BandFinder {
     const double rate = std::max(kUsualRate, (last_excess_ - excess) / steps);
     last_look_ = basis_.num_blocks();
     last_excess_ = excess;
-    return static_cast<int>(kTrustedShare * excess / rate);
+    const int guess = static_cast<int>(kTrustedShare * excess / rate);
+    const bool slow =
+        basis_.dimension() > kSlow * (request_.below + request_.above);
+    return slow ? std::max(guess, last_look_ / kSlowLooks) : guess;
   }
 
   // By how many decades a residual is too large.

@@ -23,8 +23,9 @@ using EigenvectorMatrix =
 struct EigenPairs {
   // Ascending; entry 0 is the constant pair's, exactly 0.
   Eigen::VectorXd eigenvalues;
-  // n x pairs, a column an eigenvector, M-orthonormal; rounded to this
-  // precision after its residual was certified.
+  // n x pairs, a column an eigenvector, M-orthonormal as far as the solver's
+  // tolerance allows; rounded to this precision after its residual was
+  // certified.
   EigenvectorMatrix eigenvectors;
   // Area of the canonical mesh in the payload's units: an eigenvalue in those
   // units is lambda / area, an eigenvector phi / sqrt(area).

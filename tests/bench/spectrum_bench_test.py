@@ -37,7 +37,8 @@ class SpectrumBenchTest(unittest.TestCase):
             with self.subTest(row):
                 pairs = int(row["pairs"]) + 1
                 self.assertEqual(row["found"], f"{pairs} of {pairs}")
-                self.assertLess(float(row["eigenvalues off by"]), 1e-9)
+                self.assertLess(float(row["eigenvalues off by"]),
+                                1e-5 if row["solver"] == "Marrow" else 1e-9)
                 self.assertLess(float(row["residual"]),
                                 1e-3 if row["solver"] == "Marrow" else 1e-8)
                 self.assertGreater(float(row["s"]), 0)
