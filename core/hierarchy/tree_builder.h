@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
@@ -20,8 +21,9 @@ class TreeBuilder {
   TreeBuilder(const SplitContext& context, const SplitOptions& options,
               double mesh_area);
 
-  // Tries to split every node of the deepest level; whether any was. Calls
-  // `progress` with the share of their area that has been tried.
+  // Tries to split every node of the deepest level, two at a time where there
+  // are CPUs for it; whether any was. Calls `progress`, on the caller's thread,
+  // with the share of their area that has been tried.
   // Errors: CANCELLED; the tree is then not to be used.
   absl::StatusOr<bool> Deepen(const CancelToken& cancel,
                               const std::function<void(double)>& progress);
@@ -33,6 +35,9 @@ class TreeBuilder {
   const SegmentTree& tree() const { return tree_; }
 
  private:
+  std::vector<absl::StatusOr<RegionSplit>> SplitAll(
+      const std::vector<uint32_t>& leaves, const CancelToken& cancel,
+      const std::function<void(double)>& progress) const;
   void AddChildren(uint32_t parent, RegionSplit split);
 
   SplitContext context_;
