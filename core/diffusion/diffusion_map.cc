@@ -78,10 +78,11 @@ double AverageDistance::Mean() const { return 2 * (Q_ - mean_.squaredNorm()); }
 double MeanDistance(const DiffusionMap& Phi, const FaceSet& set,
                     std::span<const double> distance) {
   double sum = 0, area = 0;
+  Eigen::RowVectorXd a(Phi.cols()), b(Phi.cols());
   for (uint32_t f : set.members) {
     const Triangle& corner = set.triangles[f];
-    const Eigen::RowVectorXd a = Phi.row(corner[2]) - Phi.row(corner[0]);
-    const Eigen::RowVectorXd b = Phi.row(corner[2]) - Phi.row(corner[1]);
+    a = Phi.row(corner[2]) - Phi.row(corner[0]);
+    b = Phi.row(corner[2]) - Phi.row(corner[1]);
     double mean = 0;
     for (uint32_t v : corner) mean += distance[v] / 3;
     mean += (a.dot(b) - a.squaredNorm() - b.squaredNorm()) / 6;

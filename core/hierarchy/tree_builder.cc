@@ -1,13 +1,26 @@
 #include "core/hierarchy/tree_builder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+#include <thread>
 #include <utility>
 
 #include "core/base/status_macros.h"
 #include "core/hierarchy/segment_node.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
+namespace {
+
+// As many as the eigensolver takes.
+int ThreadsFor(size_t regions) {
+  const unsigned threads =
+      std::clamp(std::thread::hardware_concurrency(), 1u, 2u);
+  return static_cast<int>(std::min<size_t>(threads, regions));
+}
+
+}  // namespace
 
 std::vector<uint32_t> SegmentTree::SegmentsAtLevel(uint32_t level) const {
   std::vector<uint32_t> segments;
@@ -39,19 +52,36 @@ absl::StatusOr<bool> TreeBuilder::Deepen(
   std::vector<uint32_t> leaves;
   for (const SegmentNode& node : tree_.nodes)
     if (node.level == depth_) leaves.push_back(node.id);
+  std::vector<absl::StatusOr<RegionSplit>> splits =
+      SplitAll(leaves, cancel, progress);
   bool any = false;
-  double tried = 0;
-  for (uint32_t id : leaves) {
-    MARROW_ASSIGN_OR_RETURN(
-        RegionSplit split,
-        SplitRegion(context_, tree_.nodes[id].faces, options_, cancel));
-    any |= !split.pieces.empty();
-    AddChildren(id, std::move(split));
-    tried += tree_.nodes[id].area / mesh_area_;
-    if (progress) progress(std::min(1.0, tried));
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    MARROW_RETURN_IF_ERROR(splits[i].status());
+    any |= !splits[i]->pieces.empty();
+    AddChildren(leaves[i], *std::move(splits[i]));
   }
   if (any) ++depth_;
   return any;
+}
+
+std::vector<absl::StatusOr<RegionSplit>> TreeBuilder::SplitAll(
+    const std::vector<uint32_t>& leaves, const CancelToken& cancel,
+    const std::function<void(double)>& progress) const {
+  std::vector<absl::StatusOr<RegionSplit>> splits(leaves.size());
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<double> tried = 0;
+  const auto report = [&] {
+    if (progress) progress(std::min(1.0, tried.load()));
+  };
+  Team team(ThreadsFor(leaves.size()));
+  team.For(static_cast<int>(leaves.size()), [&](int i) {
+    const SegmentNode& leaf = tree_.nodes[leaves[i]];
+    splits[i] = SplitRegion(context_, leaf.faces, options_, cancel);
+    tried += leaf.area / mesh_area_;
+    if (std::this_thread::get_id() == caller) report();
+  });
+  report();
+  return splits;
 }
 
 void TreeBuilder::StopAtDepth() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
@@ -21,8 +22,9 @@ class TreeBuilder {
   TreeBuilder(const SplitContext& context, const SplitOptions& options,
               double mesh_area);
 
-  // Tries to split every node of the deepest level; whether any was. Calls
-  // `progress` with the share of their area that has been tried.
+  // Tries to split every node of the deepest level, two at a time where there
+  // are CPUs for it; whether any was. Calls `progress`, on the caller's thread,
+  // with the share of their area that has been tried.
   // Errors: CANCELLED; the tree is then not to be used.
   absl::StatusOr<bool> Deepen(const CancelToken& cancel,
                               const std::function<void(double)>& progress);
@@ -36,6 +38,9 @@ class TreeBuilder {
   SegmentTree TakeTree() { return std::move(tree_); }
 
  private:
+  std::vector<absl::StatusOr<RegionSplit>> SplitAll(
+      const std::vector<uint32_t>& leaves, const CancelToken& cancel,
+      const std::function<void(double)>& progress) const;
   void AddChildren(uint32_t parent, RegionSplit split);
 
   SplitContext context_;

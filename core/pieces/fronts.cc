@@ -1,7 +1,7 @@
 // Each front needs the distance of the vertices that it touches, and most
-// vertices are touched by one front or two. So distances are computed when
-// first asked for: the cost is about one distance a vertex, however many fronts
-// compete.
+// vertices are touched by one front alone. So distances are computed when first
+// asked for, about one a vertex however many fronts compete, and the first of a
+// vertex is kept in an array: only those near where fronts meet take hashing.
 #include "core/pieces/fronts.h"
 
 #include <algorithm>
@@ -32,9 +32,13 @@ struct Candidate {
 class Competition {
  public:
   Competition(const Region& region, const DiffusionMap& Phi,
-              const std::vector<Structure>& structures)
-      : region_(region), owner_(region.NumFaces(), kNoIndex) {
-    known_.resize(structures.size());
+              const std::vector<Structure>& structures,
+              std::vector<FrontDistance> known)
+      : region_(region),
+        known_(std::move(known)),
+        pushed_by_(region.NumFaces(), kNoIndex),
+        owner_(region.NumFaces(), kNoIndex) {
+    known_.resize(region.NumVertices());
     for (const Structure& structure : structures)
       distances_.emplace_back(Phi, structure);
     for (uint32_t front = 0; front < structures.size(); ++front)
@@ -68,20 +72,33 @@ class Competition {
            crossed_.emplace(edge, front).second;
   }
 
+  // A candidate that is there already would only be popped in vain.
   void Push(uint32_t face, uint32_t front) {
-    if (owner_[face] == kNoIndex) heap_.push({Key(face, front), face, front});
+    if (owner_[face] != kNoIndex || pushed_by_[face] == front) return;
+    pushed_by_[face] = front;
+    heap_.push({Key(face, front), face, front});
   }
 
+  // A search begins at what is nearest to another corner.
   double Key(uint32_t face, uint32_t front) {
+    uint32_t point = 0;
+    for (uint32_t v : region_.triangles()[face])
+      if (known_[v].front == front) point = known_[v].point;
     double key = 0;
     for (uint32_t v : region_.triangles()[face])
-      key = std::max(key, DistanceOf(v, front));
+      key = std::max(key, DistanceOf(v, front, point));
     return key;
   }
 
-  double DistanceOf(uint32_t vertex, uint32_t front) {
-    auto [it, is_new] = known_[front].try_emplace(vertex, 0.0);
-    if (is_new) it->second = distances_[front](vertex);
+  double DistanceOf(uint32_t vertex, uint32_t front, uint32_t& point) {
+    FrontDistance& first = known_[vertex];
+    if (first.front == kNoIndex) {
+      const double distance = distances_[front].From(point, vertex);
+      first = {front, point, distance};
+    }
+    if (first.front == front) return first.distance;
+    auto [it, is_new] = others_.try_emplace({vertex, front}, 0.0);
+    if (is_new) it->second = distances_[front].From(point, vertex);
     return it->second;
   }
 
@@ -117,8 +134,10 @@ class Competition {
 
   const Region& region_;
   std::vector<StructureDistance> distances_;
-  // A front's distances so far; only looked up, never iterated.
-  std::vector<absl::flat_hash_map<uint32_t, double>> known_;
+  std::vector<FrontDistance> known_;  // of each vertex, to the first front
+  // (vertex, front) -> the distance to a further front; only looked up.
+  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, double> others_;
+  std::vector<uint32_t> pushed_by_;  // the latest front, of each face
   absl::flat_hash_set<std::pair<uint32_t, uint32_t>> crossed_;  // edge, front
   std::priority_queue<Candidate> heap_;
   std::vector<uint32_t> owner_;
@@ -129,8 +148,9 @@ class Competition {
 std::vector<uint32_t> CompeteFronts(const Region& region,
                                     const DiffusionMap& Phi,
                                     const std::vector<Structure>& structures,
-                                    const CancelToken& cancel) {
-  Competition competition(region, Phi, structures);
+                                    const CancelToken& cancel,
+                                    std::vector<FrontDistance> known) {
+  Competition competition(region, Phi, structures, std::move(known));
   competition.Run(cancel);
   return competition.TakeOwners();
 }

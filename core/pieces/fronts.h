@@ -7,6 +7,7 @@
 
 #include "core/base/cancel_token.h"
 #include "core/diffusion/diffusion_map.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/pieces/region.h"
 
 namespace marrow {
@@ -14,16 +15,25 @@ namespace marrow {
 // A medial structure: local vertices, ascending.
 using Structure = std::vector<uint32_t>;
 
+// What StructureDistance says of a vertex and one of the structures.
+struct FrontDistance {
+  uint32_t front = kNoIndex;  // none
+  uint32_t point = 0;         // of the structure, about the nearest
+  double distance = 0;
+};
+
 // Local face -> the structure (front) that claims it: faces leave a heap in the
 // order of (Eq. 11, local face, front), which is total, so the result does not
 // depend on the heap. Faces that no front reaches go, a connected piece of the
 // region as a whole, to the front whose greatest distance over the piece is
-// least. Returns early, with anything, once `cancel` is.
+// least. Returns early, with anything, once `cancel` is. `known`, an entry a
+// vertex or empty, saves computing these distances anew.
 // REQUIRES: at least one structure, none empty.
 std::vector<uint32_t> CompeteFronts(const Region& region,
                                     const DiffusionMap& Phi,
                                     const std::vector<Structure>& structures,
-                                    const CancelToken& cancel);
+                                    const CancelToken& cancel,
+                                    std::vector<FrontDistance> known = {});
 
 }  // namespace marrow
 

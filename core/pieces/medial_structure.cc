@@ -1,8 +1,9 @@
 #include "core/pieces/medial_structure.h"
 
 #include <algorithm>
-#include <limits>
 #include <nanoflann.hpp>
+
+#include "core/pieces/ranked_set.h"
 
 namespace marrow {
 namespace {
@@ -12,25 +13,14 @@ namespace {
 constexpr Eigen::Index kTreePoints = 48;
 constexpr Eigen::Index kTreeDimensions = 24;
 
-std::vector<uint32_t> CornersOf(const Region& region,
-                                std::span<const uint32_t> members) {
-  std::vector<uint32_t> vertices;
-  vertices.reserve(3 * members.size());
-  for (uint32_t f : members)
-    vertices.insert(vertices.end(), region.triangles()[f].begin(),
-                    region.triangles()[f].end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
 }  // namespace
 
 std::vector<uint32_t> ComputeMedialStructure(const Region& region,
                                              const DiffusionMap& Phi,
                                              std::span<const uint32_t> members,
                                              double epsilon) {
-  std::vector<uint32_t> vertices = CornersOf(region, members);
+  std::vector<uint32_t> vertices =
+      RankedSet(region.triangles(), members).Members();
   double area = 0;
   for (uint32_t f : members) area += region.areas()[f];
   if (area <= 0) return vertices;
@@ -60,14 +50,26 @@ struct StructureDistance::Index {
       return false;
     }
   };
+  using Metric = nanoflann::L2_Simple_Adaptor<double, Cloud>;
+
+  // Begins with a point that is known, unlike nanoflann's own results.
+  struct Nearest {
+    double distance;
+    uint32_t point;
+
+    bool addPoint(double other_distance, uint32_t other) {
+      if (other_distance < distance) *this = {other_distance, other};
+      return true;
+    }
+    double worstDist() const { return distance; }
+    bool full() const { return true; }
+  };
 
   explicit Index(const DiffusionMap& points)
       : cloud{points}, tree(static_cast<int>(points.cols()), cloud) {}
 
   Cloud cloud;
-  nanoflann::KDTreeSingleIndexAdaptor<
-      nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, -1>
-      tree;
+  nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, -1> tree;
 };
 
 StructureDistance::StructureDistance(const DiffusionMap& Phi,
@@ -87,16 +89,19 @@ StructureDistance::StructureDistance(StructureDistance&& other) noexcept
   if (other.index_) index_ = std::make_unique<Index>(points_);
 }
 
-double StructureDistance::operator()(uint32_t vertex) const {
+double StructureDistance::From(uint32_t& point, uint32_t vertex) const {
   if (!index_)
     return (points_.rowwise() - Phi_->row(vertex))
         .rowwise()
         .squaredNorm()
         .minCoeff();
-  uint32_t nearest = 0;
-  double distance = std::numeric_limits<double>::infinity();
-  index_->tree.knnSearch(Phi_->row(vertex).data(), 1, &nearest, &distance);
-  return distance;
+  const double* query = Phi_->row(vertex).data();
+  Index::Nearest nearest{
+      Index::Metric(index_->cloud).evalMetric(query, point, points_.cols()),
+      point};
+  index_->tree.findNeighbors(nearest, query, nanoflann::SearchParams());
+  point = nearest.point;
+  return nearest.distance;
 }
 
 }  // namespace marrow

@@ -30,7 +30,13 @@ class StructureDistance {
   ~StructureDistance();
   StructureDistance(StructureDistance&&) noexcept;
 
-  double operator()(uint32_t vertex) const;
+  double operator()(uint32_t vertex) const {
+    uint32_t point = 0;
+    return From(point, vertex);
+  }
+  // The same, found the quicker the nearer `point` is, a place in the
+  // structure; answers the nearest one in it where a tree is walked.
+  double From(uint32_t& point, uint32_t vertex) const;
 
  private:
   struct Index;

@@ -9,32 +9,22 @@
 namespace marrow {
 namespace {
 
-std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
-                                 const std::vector<uint32_t>& faces) {
-  std::vector<uint32_t> vertices;
-  vertices.reserve(3 * faces.size());
-  for (uint32_t f : faces)
-    vertices.insert(vertices.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
 std::vector<Triangle> LocalTriangles(const TriangleMesh& mesh,
                                      const std::vector<uint32_t>& faces,
-                                     const std::vector<uint32_t>& vertices) {
+                                     const RankedSet& vertices) {
   std::vector<Triangle> triangles(faces.size());
   for (size_t f = 0; f < faces.size(); ++f)
     for (int i = 0; i < 3; ++i)
-      triangles[f][i] = static_cast<uint32_t>(
-          std::lower_bound(vertices.begin(), vertices.end(),
-                           mesh.faces[faces[f]][i]) -
-          vertices.begin());
+      triangles[f][i] = vertices.RankOf(mesh.faces[faces[f]][i]);
   return triangles;
 }
 
-Adjacency LocalAdjacency(uint32_t num_vertices,
+// That of the mesh where the region is all of it.
+Adjacency LocalAdjacency(const Adjacency& adjacency, uint32_t num_vertices,
                          const std::vector<Triangle>& triangles) {
+  if (num_vertices == adjacency.NumVertices() &&
+      triangles.size() == adjacency.NumFaces())
+    return adjacency;
   TriangleMesh topology;
   topology.positions.resize(num_vertices, 3);
   topology.faces = triangles;
@@ -59,10 +49,17 @@ std::vector<std::array<uint32_t, 2>> LocalLinks(
 Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
                const std::vector<double>& face_areas,
                const std::vector<uint32_t>& faces, const FaceLinks& links)
+    : Region(mesh, adjacency, face_areas, faces, links,
+             RankedSet(mesh.faces, faces)) {}
+
+Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
+               const std::vector<double>& face_areas,
+               const std::vector<uint32_t>& faces, const FaceLinks& links,
+               const RankedSet& vertices)
     : faces_(faces),
-      vertices_(VerticesOf(mesh, faces)),
-      triangles_(LocalTriangles(mesh, faces, vertices_)),
-      local_(LocalAdjacency(NumVertices(), triangles_)),
+      vertices_(vertices.Members()),
+      triangles_(LocalTriangles(mesh, faces, vertices)),
+      local_(LocalAdjacency(adjacency, NumVertices(), triangles_)),
       loop_(NumVertices(), kNoIndex) {
   areas_.reserve(faces.size());
   for (uint32_t f : faces) areas_.push_back(face_areas[f]);
@@ -115,8 +112,13 @@ std::vector<uint32_t> ConnectedPieces(
   DisjointSets sets(adjacency.NumFaces());
   std::vector<std::pair<uint32_t, uint32_t>> around;  // label, face
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    const std::span<const uint32_t> faces = adjacency.EdgeFaces(e);
+    if (faces.size() == 2) {
+      if (labels[faces[0]] == labels[faces[1]]) sets.Union(faces[0], faces[1]);
+      continue;
+    }
     around.clear();
-    for (uint32_t f : adjacency.EdgeFaces(e)) around.push_back({labels[f], f});
+    for (uint32_t f : faces) around.push_back({labels[f], f});
     std::sort(around.begin(), around.end());
     for (size_t i = 1; i < around.size(); ++i)
       if (around[i].first == around[i - 1].first)

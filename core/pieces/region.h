@@ -12,6 +12,7 @@
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pieces/face_links.h"
+#include "core/pieces/ranked_set.h"
 
 namespace marrow {
 
@@ -51,6 +52,11 @@ class Region {
   std::vector<uint32_t> AllFaces() const;
 
  private:
+  Region(const TriangleMesh& mesh, const Adjacency& adjacency,
+         const std::vector<double>& face_areas,
+         const std::vector<uint32_t>& faces, const FaceLinks& links,
+         const RankedSet& vertices);
+
   std::vector<uint32_t> faces_;
   std::vector<uint32_t> vertices_;
   std::vector<Triangle> triangles_;

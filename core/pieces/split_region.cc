@@ -16,22 +16,34 @@
 namespace marrow {
 namespace {
 
+struct Initialisation {
+  std::vector<Structure> structures;
+  std::vector<FrontDistance> nearest;  // of each vertex
+};
+
 // Initialisation of section 3: the region's own medial structure, then the
 // farthest vertex from those there are, while it is far enough.
-std::vector<Structure> InitialStructures(const Region& region,
-                                         const DiffusionMap& Phi,
-                                         const SplitOptions& options,
-                                         const CancelToken& cancel) {
+Initialisation InitialStructures(const Region& region, const DiffusionMap& Phi,
+                                 const SplitOptions& options,
+                                 const CancelToken& cancel) {
   const std::vector<uint32_t> all = region.AllFaces();
-  std::vector<Structure> structures = {
-      ComputeMedialStructure(region, Phi, all, options.epsilon)};
+  Initialisation result;
+  auto& [structures, nearest] = result;
+  structures = {ComputeMedialStructure(region, Phi, all, options.epsilon)};
+  nearest.resize(region.NumVertices());
   std::vector<double> distance(region.NumVertices(),
                                std::numeric_limits<double>::infinity());
   double threshold = 0;
   while (!cancel.IsCancelled()) {
     const StructureDistance to_latest(Phi, structures.back());
-    for (uint32_t v = 0; v < region.NumVertices(); ++v)
-      distance[v] = std::min(distance[v], to_latest(v));
+    const auto front = static_cast<uint32_t>(structures.size() - 1);
+    uint32_t point = 0;
+    for (uint32_t v = 0; v < region.NumVertices(); ++v) {
+      const double here = to_latest.From(point, v);
+      if (!(here < distance[v])) continue;
+      distance[v] = here;
+      nearest[v] = {front, point, here};
+    }
     if (structures.size() == 1) {
       threshold = options.kappa *
                   MeanDistance(Phi, {region.triangles(), region.areas(), all},
@@ -45,7 +57,7 @@ std::vector<Structure> InitialStructures(const Region& region,
     structures.push_back(region.BoundaryLoop(
         static_cast<uint32_t>(farthest - distance.begin())));
   }
-  return structures;
+  return result;
 }
 
 std::vector<std::vector<uint32_t>> FacesOfLabels(
@@ -78,12 +90,14 @@ struct Relaxation {
 
 // The main loop of section 3, until the bijection.
 Relaxation Relax(const Region& region, const DiffusionMap& Phi,
-                 std::vector<Structure> structures, const SplitOptions& options,
+                 Initialisation initial, const SplitOptions& options,
                  const CancelToken& cancel) {
   Relaxation result;
+  std::vector<Structure> structures = std::move(initial.structures);
   std::vector<uint32_t> before;
   while (result.iterations < kMaxIterations && !cancel.IsCancelled()) {
-    result.labels = CompeteFronts(region, Phi, structures, cancel);
+    result.labels = CompeteFronts(region, Phi, structures, cancel,
+                                  std::exchange(initial.nearest, {}));
     if (cancel.IsCancelled()) break;
     ++result.iterations;
     const auto segments = FacesOfLabels(result.labels, structures.size());
@@ -145,13 +159,11 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   const DiffusionMap Phi =
       BuildDiffusionMap(context.pairs, region.mesh_vertices(), t, *dimension);
 
-  std::vector<Structure> structures =
-      InitialStructures(region, Phi, options, cancel);
+  Initialisation initial = InitialStructures(region, Phi, options, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  if (structures.size() < 2) return Unsplit(StopReason::kOneSegment);
-  const size_t num_labels = structures.size();
-  Relaxation relaxed =
-      Relax(region, Phi, std::move(structures), options, cancel);
+  const size_t num_labels = initial.structures.size();
+  if (num_labels < 2) return Unsplit(StopReason::kOneSegment);
+  Relaxation relaxed = Relax(region, Phi, std::move(initial), options, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   JoinStrayPieces(region.adjacency(), region.areas(), region.links(),
                   num_labels, relaxed.labels);

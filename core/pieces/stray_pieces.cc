@@ -95,6 +95,7 @@ void JoinStrayPieces(const Adjacency& adjacency,
     std::vector<bool> is_main(pieces.label.size(), false);
     for (uint32_t p : main)
       if (p != kNoIndex) is_main[p] = true;
+    if (std::ranges::find(is_main, false) == is_main.end()) return;
     LongestNeighbour neighbours(pieces, is_main);
     for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
       neighbours.Meet(adjacency.EdgeFaces(e));

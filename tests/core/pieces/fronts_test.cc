@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/operators/laplacian.h"
+#include "core/pieces/medial_structure.h"
 #include "gtest/gtest.h"
 #include "tests/testing/invariants.h"
 #include "tests/testing/shapes.h"
@@ -167,6 +168,26 @@ TEST(CompeteFrontsTest, LargeStructuresAgreeWithTheNaiveVersionToo) {
   const auto structures = RandomStructures(region.NumVertices(), 2, 80, random);
   EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel),
             NaiveCompetition(region, Phi, structures).Run());
+}
+
+TEST(CompeteFrontsTest, KnownDistancesAreUsedAndChangeNothing) {
+  const CancelToken cancel;
+  std::mt19937 random(26);
+  const TriangleMesh mesh = Grid(9, 7);
+  const Region region(mesh, Adjacency(mesh), FaceAreaShares(mesh),
+                      RandomFaces(mesh, 4, random));
+  const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
+  const auto structures = RandomStructures(region.NumVertices(), 3, 2, random);
+  std::vector<FrontDistance> known(region.NumVertices());
+  for (uint32_t v = 0; v < known.size(); ++v) {
+    const uint32_t front = v % 3;
+    known[v] = {front, 0, StructureDistance(Phi, structures[front])(v)};
+  }
+  const auto owners = CompeteFronts(region, Phi, structures, cancel);
+  EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel, known), owners);
+  // Front 0 is told that it is far from everything.
+  for (FrontDistance& entry : known) entry = {0, 0, 1e9};
+  EXPECT_NE(CompeteFronts(region, Phi, structures, cancel, known), owners);
 }
 
 TEST(CompeteFrontsTest, ReturnsOnceCancelled) {

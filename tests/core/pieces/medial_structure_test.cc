@@ -53,6 +53,20 @@ TEST(StructureDistanceTest, IsTheLeastDistance) {
   }
 }
 
+TEST(StructureDistanceTest, IsTheSameWhereverTheSearchBegins) {
+  std::mt19937 random(15);
+  for (int columns : {2, 24, 25}) {
+    const DiffusionMap Phi = RandomMap(200, columns, random);
+    const StructureDistance distance(Phi, RandomStructure(200, 100, random));
+    for (uint32_t v = 0; v < 200; ++v)
+      for (uint32_t begin : {0u, 50u, 99u}) {
+        uint32_t point = begin;
+        ASSERT_EQ(distance.From(point, v), distance(v)) << columns;
+        ASSERT_LT(point, 100u);
+      }
+  }
+}
+
 TEST(StructureDistanceTest, MayBeMoved) {
   std::mt19937 random(12);
   const DiffusionMap Phi = RandomMap(200, 3, random);
