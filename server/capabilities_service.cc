@@ -18,7 +18,8 @@ void SetLimits(const ServerOptions& options, v1::MeshLimits* limits) {
 
 void SetDefaults(v1::SegmentationOptions* message) {
   const SegmentationOptions defaults;
-  message->set_method(v1::METHOD_PAPER);
+  message->set_method(defaults.method == Method::kMerge ? v1::METHOD_MERGE
+                                                        : v1::METHOD_PAPER);
   message->set_kappa(defaults.split.kappa);
   message->set_delta(defaults.split.delta);
   message->set_epsilon(defaults.split.epsilon);

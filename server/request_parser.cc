@@ -13,9 +13,8 @@ namespace marrow {
 namespace {
 
 absl::StatusOr<Method> ParseMethod(v1::Method method) {
-  if (method == v1::METHOD_UNSPECIFIED || method == v1::METHOD_PAPER) {
-    return Method::kPaper;
-  }
+  if (method == v1::METHOD_UNSPECIFIED) return SegmentationOptions().method;
+  if (method == v1::METHOD_PAPER) return Method::kPaper;
   if (method == v1::METHOD_MERGE) return Method::kMerge;
   return InvalidField("options.method",
                       absl::StrCat("this server does not know method ",

@@ -163,8 +163,8 @@ void AddMethod(CLI::App& app, MethodArguments& arguments) {
   const std::map<std::string, v1::Method> methods = {
       {"paper", v1::METHOD_PAPER}, {"merge", v1::METHOD_MERGE}};
   app.add_option("--method", arguments.method,
-                 "paper: split from the top; merge: merge pieces across their "
-                 "weakest boundaries (paper)")
+                 "merge: merge pieces across their weakest boundaries; paper: "
+                 "split from the top (merge)")
       ->transform(CLI::CheckedTransformer(methods).description(""))
       ->type_name("NAME");
   app.add_option("--kappa", arguments.kappa,

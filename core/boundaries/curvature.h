@@ -33,7 +33,7 @@ Positions UnitAreaPositions(const TriangleMesh& mesh);
 class Curvature {
  public:
   static constexpr double kLeastWidth = 0.0025;
-  static constexpr uint32_t kNumWidths = 8;
+  static constexpr uint32_t kNumWidths = 7;
 
   // Errors: CANCELLED; those of BuildLaplacian(). Deterministic; time O(n
   // sqrt(n)) at most.

@@ -12,7 +12,7 @@
 namespace marrow {
 
 // Changes whenever equal requests may give other answers.
-inline constexpr char kAlgorithmRevision[] = "paper/2 merge/1";
+inline constexpr char kAlgorithmRevision[] = "paper/2 merge/2";
 
 enum class Method {
   kPaper,  // top-down: a level is a depth of the recursion
@@ -20,7 +20,7 @@ enum class Method {
 };
 
 struct SegmentationOptions {
-  Method method = Method::kPaper;
+  Method method = Method::kMerge;
   SplitOptions split;          // kMerge has a kappa of its own
   uint32_t eigen_pairs = 200;  // besides the constant one
   uint32_t levels = 3;         // kMerge gives at most 3

@@ -140,6 +140,7 @@ TEST_F(SegmentTest, AnotherKappaHitsTheSameSpectrum) {
 TEST_F(SegmentTest, TheMethodsAreTwoJobsOverOneSpectrum) {
   Start();
   v1::SegmentRequest request = Request(StarPayload(3));
+  request.mutable_options()->set_method(v1::METHOD_PAPER);
   const Answer paper = Segment(request);
   request.mutable_options()->set_method(v1::METHOD_MERGE);
   const Answer merge = Segment(request);

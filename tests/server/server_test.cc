@@ -123,6 +123,7 @@ TEST_F(ServerTest, CapabilitiesGiveLimitsAndDefaults) {
   EXPECT_EQ(response.version(), kVersion);
   EXPECT_EQ(response.mesh_limits().max_faces(), 123u);
   EXPECT_EQ(response.mesh_limits().max_inline_mesh_bytes(), 1u << 20);
+  EXPECT_EQ(response.default_options().method(), v1::METHOD_MERGE);
   EXPECT_EQ(response.default_options().kappa(), 1.5);
   EXPECT_EQ(response.automatic_salience(), kAutomaticSalience);
   EXPECT_EQ(response.result_cache_bytes(), options_.result_cache_bytes);

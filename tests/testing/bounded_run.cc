@@ -63,7 +63,8 @@ double PeakGibibytes() {
   return 0;
 }
 
-void ExpectSoundRun(const RecordingSink& run, size_t faces, size_t points) {
+void ExpectSoundRun(const RecordingSink& run, bool merged, size_t faces,
+                    size_t points) {
   for (const auto& level : run.levels) {
     ASSERT_EQ(level.face_labels.size(), faces);
     ASSERT_EQ(level.point_labels.size(), points);
@@ -73,7 +74,8 @@ void ExpectSoundRun(const RecordingSink& run, size_t faces, size_t points) {
   const TriangleMesh& mesh = run.mesh.mesh;
   if (mesh.NumFaces() > kMaxCheckedFaces) return;
   const Adjacency adjacency(mesh);
-  ExpectSoundTree(mesh, adjacency, run.tree, run.mesh.report.area, true);
+  ExpectSoundTree(mesh, adjacency, run.tree, run.mesh.report.area, true,
+                  merged);
   for (const auto& level : run.levels)
     ExpectSoundSkeleton(mesh, adjacency, run.tree, level.level, level.skeleton);
 }
@@ -87,6 +89,7 @@ BoundedRun RunWithinBounds(std::string_view draco_bytes,
   SolverEigenPairSource solver;
   CancelToken cancel;
   BoundedRun run;
+  run.merged = options.method == Method::kMerge;
   ResetPeak();
   const double cpu_begin = CpuSeconds();
   const auto begin = std::chrono::steady_clock::now();
@@ -133,7 +136,7 @@ void ExpectOutcome(const Outcome& outcome, const BoundedRun& run, size_t faces,
             << segments << " of level " << finest << "\n";
   EXPECT_GE(segments, outcome.least);
   EXPECT_LE(segments, outcome.most);
-  ExpectSoundRun(run.sink, faces, points);
+  ExpectSoundRun(run.sink, run.merged, faces, points);
 }
 
 }  // namespace marrow

@@ -21,6 +21,7 @@ struct BoundedRun {
   // By the clock or of processors, whichever is less: on an idle machine it
   // would take no longer than either.
   double seconds = 0;
+  bool merged = false;  // by METHOD_MERGE
   RecordingSink sink;
 };
 

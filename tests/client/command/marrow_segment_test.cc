@@ -165,7 +165,7 @@ TEST_F(MarrowSegmentTest, FewerLevelsLeaveNothingOfADeeperRun) {
       ListFolder(Out()),
       ElementsAre("octopus.cut.ply", "octopus.cut.seg", "octopus.json",
                   "octopus.level-1.ply", "octopus.level-1.seg", "octopus.seg"));
-  EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.level-1.seg")));
+  EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.cut.seg")));
 }
 
 TEST_F(MarrowSegmentTest, ARenumberedFileGetsTheSameLabelAFace) {

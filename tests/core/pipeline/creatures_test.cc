@@ -14,6 +14,7 @@ namespace {
 
 SegmentationOptions TwoLevels() {
   SegmentationOptions options;
+  options.method = Method::kPaper;
   options.eigen_pairs = 100;
   options.levels = 2;
   return options;

@@ -50,6 +50,7 @@ std::vector<double> AreasOf(const TriangleMesh& mesh) {
 // Levels 1 and 2 at the defaults.
 std::array<Labels, 2> Segment(const Sample& sample) {
   SegmentationOptions options;
+  options.method = Method::kPaper;
   options.levels = 2;
   const RecordingSink run = RunOn(ToTriangleMesh(sample.mesh), options);
   EXPECT_EQ(run.levels.size(), 2u);

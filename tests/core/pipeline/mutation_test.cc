@@ -70,10 +70,12 @@ class CheckedSource : public EigenPairSource {
   SolverEigenPairSource solver_;
 };
 
-void ExpectSoundRun(const RecordingSink& run, const TriangleMesh& payload) {
+void ExpectSoundRun(const RecordingSink& run, const TriangleMesh& payload,
+                    Method method) {
   const TriangleMesh& mesh = run.mesh.mesh;
   const Adjacency adjacency(mesh);
-  ExpectSoundTree(mesh, adjacency, run.tree, run.mesh.report.area, true);
+  ExpectSoundTree(mesh, adjacency, run.tree, run.mesh.report.area, true,
+                  method == Method::kMerge);
   for (const auto& level : run.levels) {
     ExpectSoundSkeleton(mesh, adjacency, run.tree, level.level, level.skeleton);
     const auto segments = run.tree.FaceSegments(level.level);
@@ -85,9 +87,10 @@ void ExpectSoundRun(const RecordingSink& run, const TriangleMesh& payload) {
 }
 
 // Returns what came of it: "segmented" or why it was refused.
-std::string TryMutation(const Mutation& mutation) {
+std::string TryMutation(const Mutation& mutation, Method method) {
   // Small meshes take the dense solver; fewer pairs let some take the other.
   SegmentationOptions options;
+  options.method = method;
   options.eigen_pairs = 60;
   CheckedSource source;
   const CancelToken cancel;
@@ -97,7 +100,7 @@ std::string TryMutation(const Mutation& mutation) {
           source, cancel, run);
   if (status.ok()) {
     EXPECT_FALSE(mutation.has_nan);
-    ExpectSoundRun(run, mutation.mesh);
+    ExpectSoundRun(run, mutation.mesh, method);
     return "segmented";
   }
   const std::string reason = ReasonOf(status);
@@ -117,7 +120,8 @@ TEST(MutationTest, DamageIsAnsweredOrRefused) {
   for (uint32_t seed = first; seed < first + count; ++seed) {
     const Mutation mutation = MakeMutation(seed);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + mutation.history);
-    ++ends[TryMutation(mutation)];
+    ++ends[TryMutation(mutation,
+                       seed % 2 == 0 ? Method::kMerge : Method::kPaper)];
     if (seed % 500 == 0) std::cerr << seed << " seeds\n";
   }
   for (const auto& [end, times] : ends)

@@ -24,6 +24,7 @@ using ::testing::ElementsAre;
 
 SegmentationOptions FewPairs() {
   SegmentationOptions options;
+  options.method = Method::kPaper;
   options.eigen_pairs = 60;
   return options;
 }
@@ -157,6 +158,7 @@ TEST(PipelineTest, LevelsTakeThePairsTheyNeedAndSayTheSame) {
        {LimbCross(4), Apart(LimbCross(3), Icosphere(3))}) {
     const std::string bytes = EncodeDraco(mesh);
     SegmentationOptions options;
+    options.method = Method::kPaper;
     pieces.most = 0;
     RecordingSink at_once;
     Sink stepwise(pieces.most);
@@ -231,6 +233,7 @@ TEST(PipelineTest, ChecksTheOptionsBeforeAnything) {
   RememberingSource source;
   RecordingSink sink;
   SegmentationOptions options;
+  options.method = Method::kPaper;
   options.split.kappa = -1;
   const absl::Status status =
       RunWith(EncodeDraco(Tetrahedron()), options, sink, source);

@@ -11,6 +11,7 @@ namespace {
 
 SegmentationOptions FewPairs() {
   SegmentationOptions options;
+  options.method = Method::kPaper;
   options.eigen_pairs = 60;
   return options;
 }
