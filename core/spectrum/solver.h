@@ -22,7 +22,7 @@ inline constexpr char kSolverRevision[] = "slicing/2";
 inline constexpr double kSolverTolerance = 1e-4;
 // Of pairs in double, and of those that certified_spectrum.h is to make strict.
 inline constexpr double kStrictTolerance = 1e-8;
-inline constexpr double kStrictSolverTolerance = 1e-9;
+inline constexpr double kStrictSolverTolerance = 1e-7;
 
 // Solves anew at every call; keeps nothing.
 class SolverEigenPairSource : public EigenPairSource {
