@@ -1,3 +1,7 @@
+// The flow runs from the sink to the source. Where it is as great as can be,
+// the nodes that could still send some to the source are the smallest source
+// side of all cuts of least cost; and that is so before what piles up behind
+// the cut has been sent back, which is left undone.
 #include "core/boundaries/min_cut.h"
 
 #include <algorithm>
@@ -20,11 +24,11 @@ void MinCut::Connect(uint32_t a, uint32_t b, double cost) {
 }
 
 void MinCut::ConnectToSource(uint32_t node, double cost) {
-  AddArcs(source_, node, cost, 0);
+  AddArcs(node, source_, cost, 0);
 }
 
 void MinCut::ConnectToSink(uint32_t node, double cost) {
-  AddArcs(node, sink_, cost, 0);
+  AddArcs(sink_, node, cost, 0);
 }
 
 void MinCut::AddArcs(uint32_t from, uint32_t to, double room,
@@ -37,11 +41,25 @@ void MinCut::AddArcs(uint32_t from, uint32_t to, double room,
 
 std::vector<MinCut::Side> MinCut::Solve() {
   Sort();
-  while (FindLevels()) Augment();
+  excess_.assign(sink_ + 1, 0);
+  // Full arcs first: the sink then leads nowhere, so nothing is sent back to
+  // it.
+  for (uint32_t k = first_[sink_]; k < first_[sink_ + 1]; ++k) {
+    excess_[sink_] = arcs_[out_[k]].room;
+    if (excess_[sink_] > 0) Push(sink_, out_[k]);
+  }
+  LabelAll();
+  while (!active_.empty()) {
+    const uint32_t node = active_.front();
+    active_.pop_front();
+    Discharge(node);
+    if (lifts_ > sink_) LabelAll();
+  }
+  LabelAll();
   const std::vector<bool> touches_sink = TouchSink();
   std::vector<Side> sides(source_, Side::kNeither);
   for (uint32_t node = 0; node < source_; ++node) {
-    if (level_[node] != kUnreached) {
+    if (label_[node] != kUnreached) {
       sides[node] = Side::kSource;
     } else if (touches_sink[node]) {
       sides[node] = Side::kSink;
@@ -60,60 +78,58 @@ void MinCut::Sort() {
     out_[place[arcs_[i ^ 1].to]++] = i;
 }
 
-// Steps from the source over arcs with room; whether the sink is among them.
-bool MinCut::FindLevels() {
-  level_.assign(sink_ + 1, kUnreached);
-  level_[source_] = 0;
+void MinCut::LabelAll() {
+  lifts_ = 0;
+  next_.assign(first_.begin(), first_.end() - 1);
+  label_.assign(sink_ + 1, kUnreached);
+  label_[source_] = 0;
   std::vector<uint32_t> queue = {source_};
   for (size_t i = 0; i < queue.size(); ++i) {
     const uint32_t u = queue[i];
     for (uint32_t k = first_[u]; k < first_[u + 1]; ++k) {
-      const Arc& arc = arcs_[out_[k]];
-      if (arc.room <= least_room_ || level_[arc.to] != kUnreached) continue;
-      level_[arc.to] = level_[u] + 1;
-      queue.push_back(arc.to);
+      const uint32_t from = arcs_[out_[k]].to;
+      if (arcs_[out_[k] ^ 1].room <= least_room_ || label_[from] != kUnreached)
+        continue;
+      label_[from] = label_[u] + 1;
+      queue.push_back(from);
     }
   }
-  return level_[sink_] != kUnreached;
 }
 
-// Fills all shortest paths.
-void MinCut::Augment() {
-  next_.assign(first_.begin(), first_.end() - 1);
-  std::vector<uint32_t> path;
-  for (;;) {
-    const uint32_t u = path.empty() ? source_ : arcs_[path.back()].to;
-    if (u == sink_) {
-      Push(path);
+// A node that no more arcs lead down from waits for its next turn.
+void MinCut::Discharge(uint32_t node) {
+  if (label_[node] == kUnreached) return;
+  for (uint32_t& k = next_[node]; k < first_[node + 1]; ++k) {
+    const Arc& arc = arcs_[out_[k]];
+    if (arc.room <= least_room_ || label_[arc.to] == kUnreached ||
+        label_[node] != label_[arc.to] + 1)
       continue;
-    }
-    while (next_[u] < first_[u + 1]) {
-      const Arc& arc = arcs_[out_[next_[u]]];
-      if (arc.room > least_room_ && level_[arc.to] == level_[u] + 1) break;
-      ++next_[u];
-    }
-    if (next_[u] < first_[u + 1]) {
-      path.push_back(out_[next_[u]]);
-    } else if (path.empty()) {
-      return;
-    } else {
-      ++next_[arcs_[path.back() ^ 1].to];
-      path.pop_back();
-    }
+    Push(node, out_[k]);
+    if (excess_[node] == 0) return;
   }
+  Lift(node);
+  active_.push_back(node);
 }
 
-// Fills the path, and leaves what stands before its first full arc.
-void MinCut::Push(std::vector<uint32_t>& path) {
-  double flow = std::numeric_limits<double>::max();
-  for (uint32_t i : path) flow = std::min(flow, arcs_[i].room);
-  size_t full = path.size();
-  for (size_t i = path.size(); i-- > 0;) {
-    arcs_[path[i]].room -= flow;
-    arcs_[path[i] ^ 1].room += flow;
-    if (arcs_[path[i]].room <= least_room_) full = i;
-  }
-  path.resize(full);
+void MinCut::Lift(uint32_t node) {
+  ++lifts_;
+  next_[node] = first_[node];
+  uint32_t least = kUnreached;
+  for (uint32_t k = first_[node]; k < first_[node + 1]; ++k)
+    if (arcs_[out_[k]].room > least_room_)
+      least = std::min(least, label_[arcs_[out_[k]].to]);
+  // As far as there are nodes: it leads to the source no more.
+  label_[node] = least < sink_ ? least + 1 : kUnreached;
+}
+
+void MinCut::Push(uint32_t node, uint32_t arc) {
+  const double flow = std::min(excess_[node], arcs_[arc].room);
+  const uint32_t to = arcs_[arc].to;
+  if (excess_[to] == 0 && to != source_ && to != sink_) active_.push_back(to);
+  excess_[node] -= flow;
+  excess_[to] += flow;
+  arcs_[arc].room -= flow;
+  arcs_[arc ^ 1].room += flow;
 }
 
 // Whether the sink can be reached, full arcs or not.

@@ -3,13 +3,16 @@
 #define MARROW_CORE_BOUNDARIES_MIN_CUT_H_
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 namespace marrow {
 
-// Where a graph between a source and a sink is cut at least cost. Finds the
-// flow along shortest paths, phase by phase (Dinic 1970): as bands on a surface
-// are a few dozen faces wide, phases are few. Deterministic. Not thread safe.
+// Where a graph between a source and a sink is cut at least cost. Pushes a flow
+// over labels of distance, first come first served, and labels anew now and
+// then (Goldberg and Tarjan 1988, Cherkassky and Goldberg 1997): on bands of a
+// surface that takes little more time the wider they are, where flows along
+// shortest paths take a phase for each length. Deterministic. Not thread safe.
 class MinCut {
  public:
   enum class Side { kSource, kSink, kNeither };
@@ -33,9 +36,10 @@ class MinCut {
 
   void AddArcs(uint32_t from, uint32_t to, double room, double room_back);
   void Sort();
-  bool FindLevels();
-  void Augment();
-  void Push(std::vector<uint32_t>& path);
+  void LabelAll();
+  void Discharge(uint32_t node);
+  void Lift(uint32_t node);
+  void Push(uint32_t node, uint32_t arc);
   std::vector<bool> TouchSink() const;
 
   uint32_t source_, sink_;
@@ -43,7 +47,12 @@ class MinCut {
   std::vector<Arc> arcs_;
   // Arcs by the node they leave: out_[first_[u]] to out_[first_[u + 1]].
   std::vector<uint32_t> first_, out_;
-  std::vector<uint32_t> level_, next_;  // next_: the first arc worth a look
+  // Steps to the source over arcs with room, at least.
+  std::vector<uint32_t> label_;
+  std::vector<uint32_t> next_;  // the first arc worth a look
+  std::vector<double> excess_;
+  std::deque<uint32_t> active_;  // nodes with excess, each once
+  uint32_t lifts_ = 0;           // since all were labelled
 };
 
 }  // namespace marrow

@@ -55,6 +55,12 @@ TEST(MinCutTest, CutsAChainAtItsWeakestEdge) {
       ElementsAre(Side::kSource, Side::kSource, Side::kSink, Side::kSink));
 }
 
+TEST(MinCutTest, OfEqualCutsTakesTheOneNextToTheSource) {
+  EXPECT_THAT(
+      Solve({4, {{0, 4, 9}, {0, 1, 1}, {1, 2, 1}, {2, 3, 1}, {3, 5, 9}}}),
+      ElementsAre(Side::kSource, Side::kSink, Side::kSink, Side::kSink));
+}
+
 TEST(MinCutTest, NodesThatReachNoTerminalAreOnNeitherSide) {
   EXPECT_THAT(
       Solve({4, {{0, 4, 1}, {1, 5, 1}, {2, 3, 1}}}),
