@@ -1,17 +1,19 @@
 #include "core/boundaries/curvature.h"
 
 #include <Eigen/Dense>
-#include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/base/status_macros.h"
+#include "core/boundaries/multigrid.h"
 #include "core/operators/laplacian.h"
 
 namespace marrow {
 namespace {
+
+constexpr double kTolerance = 1e-6;  // of a step's residual
 
 // From one width to the next, the total of |K| falls by a factor of at most 2
 // on smooth bodies with limbs, and of 2.5 to 6 where noise is what is seen.
@@ -68,26 +70,18 @@ absl::StatusOr<Curvature> Curvature::Measure(const TriangleMesh& mesh,
   const Eigen::Map<const Eigen::VectorXd> K(defects.data(), defects.size());
   MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
                           BuildLaplacian(mesh, cancel));
+  Multigrid grid(laplacian);
   Curvature result;
   result.values_.resize(defects.size() * kNumWidths);
   Eigen::VectorXd k = K.cwiseQuotient(laplacian.M);
   std::array<double, kNumWidths> total_absolute;
   double spread = 0;
   for (uint32_t i = 0; i < kNumWidths; ++i) {
-    MARROW_RETURN_IF_ERROR(cancel.Check());
     const double width = std::ldexp(kLeastWidth, static_cast<int>(i));
-    Eigen::SparseMatrix<double> A = (width * width - spread) * laplacian.L;
+    grid.SetStep(width * width - spread);
     spread = width * width;
-    A.diagonal() += laplacian.M;
-    // Conjugate gradients: a factor a width would cost more than the
-    // eigen-pairs do on large meshes.
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>,
-                             Eigen::Lower | Eigen::Upper>
-        solver(A);
-    solver.setTolerance(1e-6);
-    solver.setMaxIterations(2000);
-    const Eigen::VectorXd before = laplacian.M.cwiseProduct(k);
-    k = solver.solveWithGuess(before, k);
+    grid.Solve(laplacian.M.cwiseProduct(k), kTolerance, cancel, k);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     total_absolute[i] = laplacian.M.dot(k.cwiseAbs());
     for (Eigen::Index v = 0; v < k.size(); ++v)
       result.values_[v * kNumWidths + i] = k[v];

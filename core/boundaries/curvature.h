@@ -35,8 +35,8 @@ class Curvature {
   static constexpr double kLeastWidth = 0.0025;
   static constexpr uint32_t kNumWidths = 7;
 
-  // Errors: CANCELLED; those of BuildLaplacian(). Deterministic; time O(n
-  // sqrt(n)) at most.
+  // Errors: CANCELLED; those of BuildLaplacian(). Deterministic; time
+  // grows with the mesh.
   static absl::StatusOr<Curvature> Measure(const TriangleMesh& mesh,
                                            const Adjacency& adjacency,
                                            const CancelToken& cancel);
