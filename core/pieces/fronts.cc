@@ -31,7 +31,7 @@ struct Candidate {
 
 class Competition {
  public:
-  Competition(const Region& region, const DiffusionMap& Phi,
+  Competition(const Region& region, const MapSketch& sketch,
               const std::vector<Structure>& structures,
               std::vector<FrontDistance> known)
       : region_(region),
@@ -40,7 +40,7 @@ class Competition {
         owner_(region.NumFaces(), kNoIndex) {
     known_.resize(region.NumVertices());
     for (const Structure& structure : structures)
-      distances_.emplace_back(Phi, structure);
+      distances_.emplace_back(sketch, structure);
     for (uint32_t front = 0; front < structures.size(); ++front)
       for (uint32_t v : structures[front])
         for (uint32_t f : region_.adjacency().VertexFaces(v)) Push(f, front);
@@ -146,11 +146,11 @@ class Competition {
 }  // namespace
 
 std::vector<uint32_t> CompeteFronts(const Region& region,
-                                    const DiffusionMap& Phi,
+                                    const MapSketch& sketch,
                                     const std::vector<Structure>& structures,
                                     const CancelToken& cancel,
                                     std::vector<FrontDistance> known) {
-  Competition competition(region, Phi, structures, std::move(known));
+  Competition competition(region, sketch, structures, std::move(known));
   competition.Run(cancel);
   return competition.TakeOwners();
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/cancel_token.h"
-#include "core/diffusion/diffusion_map.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/pieces/map_sketch.h"
 #include "core/pieces/region.h"
 
 namespace marrow {
@@ -30,7 +30,7 @@ struct FrontDistance {
 // vertex or empty, saves computing these distances anew.
 // REQUIRES: at least one structure, none empty.
 std::vector<uint32_t> CompeteFronts(const Region& region,
-                                    const DiffusionMap& Phi,
+                                    const MapSketch& sketch,
                                     const std::vector<Structure>& structures,
                                     const CancelToken& cancel,
                                     std::vector<FrontDistance> known = {});

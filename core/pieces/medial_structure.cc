@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <nanoflann.hpp>
+#include <utility>
 
 #include "core/pieces/ranked_set.h"
 
 namespace marrow {
 namespace {
 
-// Below this many points, or above this many dimensions, looking at every point
-// beats walking a tree.
-constexpr Eigen::Index kTreePoints = 48;
-constexpr Eigen::Index kTreeDimensions = 24;
+constexpr int kDimensions = MapSketch::kDimensions;
 
 }  // namespace
 
@@ -38,67 +36,77 @@ std::vector<uint32_t> ComputeMedialStructure(const Region& region,
   return vertices;
 }
 
-struct StructureDistance::Index {
-  // nanoflann's view of the structure's points.
-  struct Cloud {
-    const DiffusionMap& points;
+// The nearest point so far, as nanoflann's searches ask for it: they offer
+// every point whose sketch is nearer than worstDist().
+struct StructureDistance::Nearest {
+  const StructureDistance& structure;
+  uint32_t vertex;
+  double distance;
+  uint32_t point = 0;
 
-    size_t kdtree_get_point_count() const { return points.rows(); }
-    double kdtree_get_pt(size_t i, size_t d) const { return points(i, d); }
+  bool addPoint(double, uint32_t other) {
+    const auto difference =
+        structure.points_.row(other) - structure.sketch_->Phi().row(vertex);
+    const double measured = difference.squaredNorm();
+    if (measured < distance) {
+      distance = measured;
+      point = other;
+    }
+    return true;
+  }
+  double worstDist() const {
+    return distance > 0 ? distance + structure.sketch_->slack() : 0;
+  }
+  bool full() const { return true; }
+};
+
+struct StructureDistance::Index {
+  // nanoflann's view of the sketches.
+  struct Cloud {
+    std::vector<double> rows;
+
+    size_t kdtree_get_point_count() const { return rows.size() / kDimensions; }
+    double kdtree_get_pt(size_t i, size_t d) const {
+      return rows[i * kDimensions + d];
+    }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
       return false;
     }
   };
+
   using Metric = nanoflann::L2_Simple_Adaptor<double, Cloud>;
 
-  // Begins with a point that is known, unlike nanoflann's own results.
-  struct Nearest {
-    double distance;
-    uint32_t point;
-
-    bool addPoint(double other_distance, uint32_t other) {
-      if (other_distance < distance) *this = {other_distance, other};
-      return true;
-    }
-    double worstDist() const { return distance; }
-    bool full() const { return true; }
-  };
-
-  explicit Index(const DiffusionMap& points)
-      : cloud{points}, tree(static_cast<int>(points.cols()), cloud) {}
+  explicit Index(std::vector<double> rows)
+      : cloud{std::move(rows)}, tree(kDimensions, cloud) {}
 
   Cloud cloud;
-  nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, -1> tree;
+  nanoflann::KDTreeSingleIndexAdaptor<Metric, Cloud, kDimensions> tree;
 };
 
-StructureDistance::StructureDistance(const DiffusionMap& Phi,
+StructureDistance::StructureDistance(const MapSketch& sketch,
                                      const std::vector<uint32_t>& structure)
-    : Phi_(&Phi), points_(structure.size(), Phi.cols()) {
-  for (size_t i = 0; i < structure.size(); ++i)
-    points_.row(i) = Phi.row(structure[i]);
-  if (points_.rows() >= kTreePoints && points_.cols() <= kTreeDimensions)
-    index_ = std::make_unique<Index>(points_);
+    : sketch_(&sketch), points_(structure.size(), sketch.Phi().cols()) {
+  std::vector<double> rows;
+  rows.reserve(structure.size() * kDimensions);
+  for (size_t i = 0; i < structure.size(); ++i) {
+    points_.row(i) = sketch.Phi().row(structure[i]);
+    const double* row = sketch.Row(structure[i]);
+    rows.insert(rows.end(), row, row + kDimensions);
+  }
+  index_ = std::make_unique<Index>(std::move(rows));
 }
 
 StructureDistance::~StructureDistance() = default;
+StructureDistance::StructureDistance(StructureDistance&&) noexcept = default;
 
-// The tree refers to points_, so it is built again over the moved ones.
-StructureDistance::StructureDistance(StructureDistance&& other) noexcept
-    : Phi_(other.Phi_), points_(std::move(other.points_)) {
-  if (other.index_) index_ = std::make_unique<Index>(points_);
-}
-
-double StructureDistance::From(uint32_t& point, uint32_t vertex) const {
-  if (!index_)
-    return (points_.rowwise() - Phi_->row(vertex))
-        .rowwise()
-        .squaredNorm()
-        .minCoeff();
-  const double* query = Phi_->row(vertex).data();
-  Index::Nearest nearest{
-      Index::Metric(index_->cloud).evalMetric(query, point, points_.cols()),
-      point};
+double StructureDistance::From(uint32_t& point, uint32_t vertex,
+                               double bound) const {
+  const double* query = sketch_->Row(vertex);
+  Nearest nearest{*this, vertex, bound};
+  const double first = Index::Metric(index_->cloud)
+                           .evalMetric(query, point, size_t{kDimensions});
+  if (first < nearest.worstDist()) nearest.addPoint(first, point);
   index_->tree.findNeighbors(nearest, query, nanoflann::SearchParams());
   point = nearest.point;
   return nearest.distance;

@@ -3,11 +3,13 @@
 #define MARROW_CORE_PIECES_MEDIAL_STRUCTURE_H_
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/diffusion/diffusion_map.h"
+#include "core/pieces/map_sketch.h"
 #include "core/pieces/region.h"
 
 namespace marrow {
@@ -21,11 +23,12 @@ std::vector<uint32_t> ComputeMedialStructure(const Region& region,
                                              double epsilon);
 
 // The squared diffusion distance from a vertex to the nearest point of a medial
-// structure. Small structures are compared point by point, large ones through a
-// k-d tree; both give the exact least distance. Phi must outlive it.
+// structure, exactly. Only those points are measured whose sketches are near
+// enough; large structures have theirs in a k-d tree. The sketch must outlive
+// it.
 class StructureDistance {
  public:
-  StructureDistance(const DiffusionMap& Phi,
+  StructureDistance(const MapSketch& sketch,
                     const std::vector<uint32_t>& structure);
   ~StructureDistance();
   StructureDistance(StructureDistance&&) noexcept;
@@ -35,13 +38,16 @@ class StructureDistance {
     return From(point, vertex);
   }
   // The same, found the quicker the nearer `point` is, a place in the
-  // structure; answers the nearest one in it where a tree is walked.
-  double From(uint32_t& point, uint32_t vertex) const;
+  // structure; leaves the nearest one in it. Where nothing is nearer than
+  // `bound`, that is found out sooner: answers it, and `point` means nothing.
+  double From(uint32_t& point, uint32_t vertex,
+              double bound = std::numeric_limits<double>::infinity()) const;
 
  private:
+  struct Nearest;
   struct Index;
 
-  const DiffusionMap* Phi_;
+  const MapSketch* sketch_;
   DiffusionMap points_;
   std::unique_ptr<Index> index_;
 };

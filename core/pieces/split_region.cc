@@ -23,9 +23,10 @@ struct Initialisation {
 
 // Initialisation of section 3: the region's own medial structure, then the
 // farthest vertex from those there are, while it is far enough.
-Initialisation InitialStructures(const Region& region, const DiffusionMap& Phi,
+Initialisation InitialStructures(const Region& region, const MapSketch& sketch,
                                  const SplitOptions& options,
                                  const CancelToken& cancel) {
+  const DiffusionMap& Phi = sketch.Phi();
   const std::vector<uint32_t> all = region.AllFaces();
   Initialisation result;
   auto& [structures, nearest] = result;
@@ -35,11 +36,11 @@ Initialisation InitialStructures(const Region& region, const DiffusionMap& Phi,
                                std::numeric_limits<double>::infinity());
   double threshold = 0;
   while (!cancel.IsCancelled()) {
-    const StructureDistance to_latest(Phi, structures.back());
+    const StructureDistance to_latest(sketch, structures.back());
     const auto front = static_cast<uint32_t>(structures.size() - 1);
     uint32_t point = 0;
     for (uint32_t v = 0; v < region.NumVertices(); ++v) {
-      const double here = to_latest.From(point, v);
+      const double here = to_latest.From(point, v, distance[v]);
       if (!(here < distance[v])) continue;
       distance[v] = here;
       nearest[v] = {front, point, here};
@@ -89,14 +90,14 @@ struct Relaxation {
 };
 
 // The main loop of section 3, until the bijection.
-Relaxation Relax(const Region& region, const DiffusionMap& Phi,
+Relaxation Relax(const Region& region, const MapSketch& sketch,
                  Initialisation initial, const SplitOptions& options,
                  const CancelToken& cancel) {
   Relaxation result;
   std::vector<Structure> structures = std::move(initial.structures);
   std::vector<uint32_t> before;
   while (result.iterations < kMaxIterations && !cancel.IsCancelled()) {
-    result.labels = CompeteFronts(region, Phi, structures, cancel,
+    result.labels = CompeteFronts(region, sketch, structures, cancel,
                                   std::exchange(initial.nearest, {}));
     if (cancel.IsCancelled()) break;
     ++result.iterations;
@@ -111,8 +112,8 @@ Relaxation Relax(const Region& region, const DiffusionMap& Phi,
     structures.clear();
     for (const auto& faces : segments)
       if (!faces.empty())
-        structures.push_back(
-            ComputeMedialStructure(region, Phi, faces, options.epsilon));
+        structures.push_back(ComputeMedialStructure(region, sketch.Phi(), faces,
+                                                    options.epsilon));
     // Numbers shift when a front is dropped: nothing to compare with.
     before = starved ? std::vector<uint32_t>() : std::move(now);
   }
@@ -158,12 +159,14 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   if (!dimension) return Unsplit(StopReason::kTooFewEigenPairs);
   const DiffusionMap Phi =
       BuildDiffusionMap(context.pairs, region.mesh_vertices(), t, *dimension);
+  const MapSketch sketch(Phi);
 
-  Initialisation initial = InitialStructures(region, Phi, options, cancel);
+  Initialisation initial = InitialStructures(region, sketch, options, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const size_t num_labels = initial.structures.size();
   if (num_labels < 2) return Unsplit(StopReason::kOneSegment);
-  Relaxation relaxed = Relax(region, Phi, std::move(initial), options, cancel);
+  Relaxation relaxed =
+      Relax(region, sketch, std::move(initial), options, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   JoinStrayPieces(region.adjacency(), region.areas(), region.links(),
                   num_labels, relaxed.labels);

@@ -76,7 +76,7 @@ TEST(FaceLinksTest, FrontsCrossThem) {
   const Adjacency adjacency(mesh);
   const Region region(mesh, adjacency, std::vector<double>(8, 0.125),
                       {0, 1, 2, 3, 4, 5, 6, 7}, FaceLinks(adjacency, bridges));
-  EXPECT_THAT(CompeteFronts(region, Phi, {{0}, {21}}, CancelToken()),
+  EXPECT_THAT(CompeteFronts(region, MapSketch(Phi), {{0}, {21}}, CancelToken()),
               ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
 }
 

@@ -134,7 +134,7 @@ TEST(CompeteFrontsTest, AgreesWithTheNaiveVersionOnRandomRegions) {
       for (uint32_t count : {1u, 3u}) {
         const auto structures =
             RandomStructures(region.NumVertices(), count, 3, random);
-        EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel),
+        EXPECT_EQ(CompeteFronts(region, MapSketch(Phi), structures, cancel),
                   NaiveCompetition(region, Phi, structures).Run())
             << name << ", share " << share << ", " << count << " fronts";
       }
@@ -153,7 +153,7 @@ TEST(CompeteFrontsTest, TiesGoByFaceThenFront) {
   for (uint32_t count : {2u, 5u}) {
     const auto structures =
         RandomStructures(region.NumVertices(), count, 2, random);
-    EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel),
+    EXPECT_EQ(CompeteFronts(region, MapSketch(Phi), structures, cancel),
               NaiveCompetition(region, Phi, structures).Run());
   }
 }
@@ -166,7 +166,7 @@ TEST(CompeteFrontsTest, LargeStructuresAgreeWithTheNaiveVersionToo) {
                       RandomFaces(mesh, 4, random));
   const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
   const auto structures = RandomStructures(region.NumVertices(), 2, 80, random);
-  EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel),
+  EXPECT_EQ(CompeteFronts(region, MapSketch(Phi), structures, cancel),
             NaiveCompetition(region, Phi, structures).Run());
 }
 
@@ -178,16 +178,19 @@ TEST(CompeteFrontsTest, KnownDistancesAreUsedAndChangeNothing) {
                       RandomFaces(mesh, 4, random));
   const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
   const auto structures = RandomStructures(region.NumVertices(), 3, 2, random);
+  const MapSketch sketch(Phi);
   std::vector<FrontDistance> known(region.NumVertices());
   for (uint32_t v = 0; v < known.size(); ++v) {
     const uint32_t front = v % 3;
-    known[v] = {front, 0, StructureDistance(Phi, structures[front])(v)};
+    known[v] = {front, 0, StructureDistance(sketch, structures[front])(v)};
   }
-  const auto owners = CompeteFronts(region, Phi, structures, cancel);
-  EXPECT_EQ(CompeteFronts(region, Phi, structures, cancel, known), owners);
+  const auto owners = CompeteFronts(region, MapSketch(Phi), structures, cancel);
+  EXPECT_EQ(CompeteFronts(region, MapSketch(Phi), structures, cancel, known),
+            owners);
   // Front 0 is told that it is far from everything.
   for (FrontDistance& entry : known) entry = {0, 0, 1e9};
-  EXPECT_NE(CompeteFronts(region, Phi, structures, cancel, known), owners);
+  EXPECT_NE(CompeteFronts(region, MapSketch(Phi), structures, cancel, known),
+            owners);
 }
 
 TEST(CompeteFrontsTest, ReturnsOnceCancelled) {
@@ -197,9 +200,8 @@ TEST(CompeteFrontsTest, ReturnsOnceCancelled) {
   const TriangleMesh mesh = Grid(3, 3);
   const Region region(mesh, Adjacency(mesh), FaceAreaShares(mesh),
                       RandomFaces(mesh, 4, random));
-  EXPECT_EQ(CompeteFronts(region, RandomMap(region.NumVertices(), random),
-                          {{0}}, cancel)
-                .size(),
+  const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
+  EXPECT_EQ(CompeteFronts(region, MapSketch(Phi), {{0}}, cancel).size(),
             region.NumFaces());
 }
 
@@ -211,8 +213,9 @@ TEST(CompeteFrontsTest, ABookOfManyPagesStaysQuick) {
   const Region region(mesh, Adjacency(mesh),
                       std::vector<double>(mesh.NumFaces(), 1e-5),
                       RandomFaces(mesh, 4, random));
-  const auto owners = CompeteFronts(
-      region, RandomMap(region.NumVertices(), random), {{0}, {1}, {7}}, cancel);
+  const DiffusionMap Phi = RandomMap(region.NumVertices(), random);
+  const auto owners =
+      CompeteFronts(region, MapSketch(Phi), {{0}, {1}, {7}}, cancel);
   EXPECT_EQ(std::ranges::count(owners, kNoIndex), 0);
 }
 

@@ -36,14 +36,15 @@ double BruteForce(const DiffusionMap& Phi,
   return least;
 }
 
-// Sizes and dimensions on both sides of where a tree takes over.
+// Dimensions on both sides of where a sketch is less than the map.
 TEST(StructureDistanceTest, IsTheLeastDistance) {
   std::mt19937 random(11);
-  for (int columns : {1, 2, 6, 24, 25, 60}) {
+  for (int columns : {1, 2, 6, 16, 17, 60}) {
     const DiffusionMap Phi = RandomMap(400, columns, random);
+    const MapSketch sketch(Phi);
     for (uint32_t size : {1u, 2u, 47u, 48u, 300u, 400u}) {
       const auto structure = RandomStructure(400, size, random);
-      const StructureDistance distance(Phi, structure);
+      const StructureDistance distance(sketch, structure);
       for (uint32_t v = 0; v < 400; ++v) {
         const double exact = BruteForce(Phi, structure, v);
         ASSERT_NEAR(distance(v), exact, 1e-14 * columns)
@@ -55,23 +56,41 @@ TEST(StructureDistanceTest, IsTheLeastDistance) {
 
 TEST(StructureDistanceTest, IsTheSameWhereverTheSearchBegins) {
   std::mt19937 random(15);
-  for (int columns : {2, 24, 25}) {
+  for (int columns : {2, 16, 17}) {
     const DiffusionMap Phi = RandomMap(200, columns, random);
-    const StructureDistance distance(Phi, RandomStructure(200, 100, random));
+    const MapSketch sketch(Phi);
+    const auto structure = RandomStructure(200, 100, random);
+    const StructureDistance distance(sketch, structure);
     for (uint32_t v = 0; v < 200; ++v)
       for (uint32_t begin : {0u, 50u, 99u}) {
         uint32_t point = begin;
         ASSERT_EQ(distance.From(point, v), distance(v)) << columns;
-        ASSERT_LT(point, 100u);
+        ASSERT_NEAR(DiffusionDistance(Phi, structure[point], v), distance(v),
+                    1e-14 * columns);
       }
+  }
+}
+
+TEST(StructureDistanceTest, GivesUpWhereNothingIsNearerThanTheBound) {
+  std::mt19937 random(16);
+  const DiffusionMap Phi = RandomMap(200, 20, random);
+  const MapSketch sketch(Phi);
+  const StructureDistance distance(sketch, RandomStructure(200, 30, random));
+  for (uint32_t v = 0; v < 200; ++v) {
+    const double exact = distance(v);
+    for (double bound : {0.5 * exact, exact, 1.01 * exact + 0.01}) {
+      uint32_t point = 7;
+      ASSERT_EQ(distance.From(point, v, bound), std::min(bound, exact));
+    }
   }
 }
 
 TEST(StructureDistanceTest, MayBeMoved) {
   std::mt19937 random(12);
   const DiffusionMap Phi = RandomMap(200, 3, random);
+  const MapSketch sketch(Phi);
   const auto structure = RandomStructure(200, 100, random);
-  auto original = std::make_unique<StructureDistance>(Phi, structure);
+  auto original = std::make_unique<StructureDistance>(sketch, structure);
   const StructureDistance moved = std::move(*original);
   original.reset();
   for (uint32_t v = 0; v < 200; ++v)
@@ -82,7 +101,7 @@ TEST(StructureDistanceTest, TakesManyEqualPoints) {
   const DiffusionMap Phi = DiffusionMap::Ones(5000, 2);
   std::vector<uint32_t> all(5000);
   for (uint32_t v = 0; v < 5000; ++v) all[v] = v;
-  EXPECT_EQ(StructureDistance(Phi, all)(77), 0);
+  EXPECT_EQ(StructureDistance(MapSketch(Phi), all)(77), 0);
 }
 
 struct Scene {
