@@ -19,6 +19,8 @@ namespace {
 
 // The finding of the pieces takes about this share of the time.
 constexpr double kPiecesDone = 0.7;
+// And its eigen-pairs this share of a level.
+constexpr double kPairsShare = 0.5;
 
 // The leaves of the paper's tree.
 struct Pieces {
@@ -29,13 +31,20 @@ struct Pieces {
 absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
                                   const SplitOptions& options, double mesh_area,
                                   const CancelToken& cancel,
+                                  const PullCallback& pull,
                                   const std::function<void(double)>& progress) {
   TreeBuilder builder(context, options, mesh_area);
   for (uint32_t level = 0; level < kPieceLevels; ++level) {
-    MARROW_ASSIGN_OR_RETURN(
-        const bool deeper, builder.Deepen(cancel, [&](double share) {
-          progress(kPiecesDone * (level + share) / kPieceLevels);
-        }));
+    const auto report = [&](double share) {
+      progress(kPiecesDone * (level + share) / kPieceLevels);
+    };
+    MARROW_RETURN_IF_ERROR(pull(builder.LeastShare(), [&](double share) {
+      report(kPairsShare * share);
+    }));
+    MARROW_ASSIGN_OR_RETURN(const bool deeper,
+                            builder.Deepen(cancel, [&](double share) {
+                              report(kPairsShare + (1 - kPairsShare) * share);
+                            }));
     if (!deeper) break;
   }
   const std::vector<uint32_t> leaves =
@@ -51,13 +60,13 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
 
 absl::StatusOr<MergeTree> BuildMergeTree(
     const SplitContext& context, const SplitOptions& options, double mesh_area,
-    uint32_t levels, const CancelToken& cancel,
+    uint32_t levels, const CancelToken& cancel, const PullCallback& pull,
     const std::function<void(double)>& progress) {
   SplitOptions split = options;
   split.kappa = kPieceKappa;
   MergeTree result;
-  MARROW_ASSIGN_OR_RETURN(
-      Pieces pieces, FindPieces(context, split, mesh_area, cancel, progress));
+  MARROW_ASSIGN_OR_RETURN(Pieces pieces, FindPieces(context, split, mesh_area,
+                                                    cancel, pull, progress));
   result.piece_of_face = std::move(pieces.of_face);
   MARROW_ASSIGN_OR_RETURN(
       const Curvature curvature,

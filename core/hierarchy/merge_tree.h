@@ -21,13 +21,22 @@ struct MergeTree {
   SegmentTree tree;  // its levels are cuts of the order (level_tree.h)
 };
 
+// Sees to it that the context's pairs suffice for regions of that share of the
+// mesh.
+using PullCallback = std::function<absl::Status(
+    double area_share, const std::function<void(double)>& progress)>;
+
+// Pulls what the finding of the pieces takes, level by level, and nothing more:
+// the medial structures of what they merge into make do with it.
+//
 // `options.kappa` is not looked at: pieces have their own. `mesh_area` is in
 // units of the positions. Gives the first `levels` of the levels of
 // core/boundaries/calibration.h, all where it has fewer. Calls `progress` with
-// the share that is done. Deterministic. Errors: CANCELLED.
+// the share that is done. Deterministic. Errors: CANCELLED; those of `pull`.
+// REQUIRES: the pairs suffice for the mesh as a whole.
 absl::StatusOr<MergeTree> BuildMergeTree(
     const SplitContext& context, const SplitOptions& options, double mesh_area,
-    uint32_t levels, const CancelToken& cancel,
+    uint32_t levels, const CancelToken& cancel, const PullCallback& pull,
     const std::function<void(double)>& progress);
 
 }  // namespace marrow

@@ -47,6 +47,15 @@ TreeBuilder::TreeBuilder(const SplitContext& context,
   tree_.nodes.push_back(MakeNode(context_, mesh_area_, std::move(whole)));
 }
 
+double TreeBuilder::LeastShare() const {
+  double least = mesh_area_;
+  for (const SegmentNode& node : tree_.nodes)
+    if (node.level == depth_ && node.area > 0 &&
+        node.faces.size() >= kMinRegionFaces)
+      least = std::min(least, node.area);
+  return least / mesh_area_;
+}
+
 absl::StatusOr<bool> TreeBuilder::Deepen(
     const CancelToken& cancel, const std::function<void(double)>& progress) {
   std::vector<uint32_t> leaves;

@@ -22,6 +22,10 @@ class TreeBuilder {
   TreeBuilder(const SplitContext& context, const SplitOptions& options,
               double mesh_area);
 
+  // As a share of the mesh, the least area of those that Deepen() will try to
+  // split: what pairs they take follows from it. 1 where there are none.
+  double LeastShare() const;
+
   // Tries to split every node of the deepest level, two at a time where there
   // are CPUs for it; whether any was. Calls `progress`, on the caller's thread,
   // with the share of their area that has been tried.

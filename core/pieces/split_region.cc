@@ -150,15 +150,16 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const Region region(context.mesh, context.adjacency, context.face_areas,
                       faces, context.links);
+  const EigenPairs& pairs = *context.pulled.pairs;
   if (faces.size() < kMinRegionFaces || region.area() <= 0 ||
-      context.pairs.NumPairs() < 2)
+      pairs.NumPairs() < 2)
     return Unsplit(StopReason::kTooSmall);
-  const double t = TimeScale(context.pairs, region.area());
+  const double t = TimeScale(pairs, region.area());
   const std::optional<uint32_t> dimension =
-      MapDimension(context.pairs, t, options.delta);
+      MapDimension(pairs, t, options.delta);
   if (!dimension) return Unsplit(StopReason::kTooFewEigenPairs);
   const DiffusionMap Phi =
-      BuildDiffusionMap(context.pairs, region.mesh_vertices(), t, *dimension);
+      BuildDiffusionMap(pairs, region.mesh_vertices(), t, *dimension);
   const MapSketch sketch(Phi);
 
   Initialisation initial = InitialStructures(region, sketch, options, cancel);
@@ -187,13 +188,13 @@ std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
                                         const SplitOptions& options) {
   const Region region(context.mesh, context.adjacency, context.face_areas,
                       faces, context.links);
-  if (context.pairs.NumPairs() < 2 || region.area() <= 0)
-    return region.mesh_vertices();
-  const double t = TimeScale(context.pairs, region.area());
-  const DiffusionMap Phi =
-      BuildDiffusionMap(context.pairs, region.mesh_vertices(), t,
-                        MapDimension(context.pairs, t, options.delta)
-                            .value_or(context.pairs.NumPairs() - 1));
+  const auto& [pairs, usable] = context.pulled;
+  if (usable == 0 || region.area() <= 0) return region.mesh_vertices();
+  const double t = TimeScale(*pairs, region.area());
+  const uint32_t wanted =
+      MapDimension(*pairs, t, options.delta).value_or(usable);
+  const DiffusionMap Phi = BuildDiffusionMap(*pairs, region.mesh_vertices(), t,
+                                             std::min(wanted, usable));
   std::vector<uint32_t> result;
   for (uint32_t v :
        ComputeMedialStructure(region, Phi, region.AllFaces(), options.epsilon))

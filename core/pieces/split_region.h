@@ -23,6 +23,7 @@
 #define MARROW_CORE_PIECES_SPLIT_REGION_H_
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -55,11 +56,20 @@ inline constexpr uint32_t kMinRegionFaces = 16;
 inline constexpr uint32_t kMaxIterations = 50;
 inline constexpr uint32_t kMaxMedialStructures = 40;
 
+// The eigen-pairs of a mesh as far as they have been pulled.
+struct PulledPairs {
+  std::shared_ptr<const EigenPairs> pairs;  // not null
+  // So many of them, the constant one not counted, are what anyone may use.
+  // Those beyond are at hand only because others wanted them: where answers
+  // depended on them, they would depend on the cache.
+  uint32_t usable = 0;
+};
+
 // What all regions of one mesh share. The referents must outlive the use.
 struct SplitContext {
   const TriangleMesh& mesh;
   const Adjacency& adjacency;
-  const EigenPairs& pairs;
+  const PulledPairs& pulled;
   const std::vector<double>& face_areas;  // in units of the mesh's whole area
   // Where the fronts step from shell to shell, as the operator does.
   FaceLinks links = {};
@@ -84,7 +94,9 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
                                         const SplitOptions& options,
                                         const CancelToken& cancel);
 
-// The medial structure of a region at its own time scale (Eq. 8 and 10).
+// The medial structure of a region at its own time scale (Eq. 8 and 10), as far
+// as the usable pairs go: a part of a region that was split has those that the
+// region took.
 std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
                                         const std::vector<uint32_t>& faces,
                                         const SplitOptions& options);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/base/status_macros.h"
@@ -42,15 +41,18 @@ struct PreparedBody::Own {
 };
 
 PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
+                           uint32_t most_pairs,
                            std::unique_ptr<EigenPairStream> stream)
     : area_(body.canonical->report.area),
       share_(body.share),
+      most_pairs_(std::min(most_pairs, body.canonical->mesh.NumVertices() - 1)),
       own_(prepared.bodies.IsWhole()
                ? nullptr
                : std::make_shared<const Own>(body.canonical->mesh)),
       stream_(std::move(stream)),
+      pulled_{std::make_shared<const EigenPairs>(), 0},
       context_{body.canonical->mesh,
-               own_ ? own_->adjacency : prepared.adjacency, pairs_,
+               own_ ? own_->adjacency : prepared.adjacency, pulled_,
                own_ ? own_->areas : prepared.areas,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
                          body.bridges)} {}
@@ -58,32 +60,40 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,
                                 const ProgressCallback& progress) {
-  const bool all = area_share <= 0;
-  double bound = all ? std::numeric_limits<double>::infinity() : 0;
-  while (stream_ != nullptr) {
-    if (!all && pairs_.NumPairs() > 1) {
+  const auto& pairs = pulled_.pairs;
+  std::optional<uint32_t> taken;
+  for (double bound = 0;;) {
+    if (pairs->NumPairs() > 1) {
       // A little less, for the sum of a region's areas may be rounded.
-      const double t = TimeScale(pairs_, (1 - 1e-9) * area_share);
-      if (MapDimension(pairs_, t, delta)) return absl::OkStatus();
+      const double t = TimeScale(*pairs, (1 - 1e-9) * area_share);
+      taken = MapDimension(*pairs, t, delta);
       bound = std::max(-std::log(delta) / t,
-                       pairs_.eigenvalues[pairs_.NumPairs() - 1]);
+                       pairs->eigenvalues[pairs->NumPairs() - 1]);
     }
-    MARROW_ASSIGN_OR_RETURN(const std::shared_ptr<const EigenPairs> longer,
-                            stream_->UpTo(bound, cancel, progress));
-    const bool ended = longer->NumPairs() == pairs_.NumPairs();
-    if (ended || std::isinf(bound)) stream_.reset();
-    if (!ended) pairs_ = *longer;
+    if (taken || stream_ == nullptr) break;
+    MARROW_RETURN_IF_ERROR(PullUpTo(bound, cancel, progress));
   }
+  const uint32_t all = std::max(pairs->NumPairs(), 1u) - 1;
+  pulled_.usable = std::max(pulled_.usable, taken.value_or(all));
   return absl::OkStatus();
 }
 
-absl::Status PullPairs(const Job& job, double area_share) {
+absl::Status PreparedBody::PullUpTo(double bound, const CancelToken& cancel,
+                                    const ProgressCallback& progress) {
+  MARROW_ASSIGN_OR_RETURN(std::shared_ptr<const EigenPairs> longer,
+                          stream_->UpTo(bound, cancel, progress));
+  if (longer->NumPairs() == pulled_.pairs->NumPairs()) stream_.reset();
+  pulled_.pairs = std::move(longer);
+  return absl::OkStatus();
+}
+
+absl::Status PullPairs(const Job& job) {
   double before = 0;
   for (const auto& body : job.bodies) {
     // The solver looks at the token alone, so a sink that has had enough is
     // heard when the solver is done, unless its owner cancels too.
-    MARROW_RETURN_IF_ERROR(body->Pull(
-        area_share, job.options.split.delta, job.cancel, [&](double share) {
+    MARROW_RETURN_IF_ERROR(
+        body->Pull(1, job.options.split.delta, job.cancel, [&](double share) {
           const double done = before + body->share() * share;
           (void)job.reporter.Progress(
               Stage::kSpectrum, kMeshDone + (kSpectrumDone - kMeshDone) * done);

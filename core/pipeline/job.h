@@ -57,31 +57,36 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies);
 // used again, so `prepared` and the body must outlive it.
 class PreparedBody {
  public:
-  // There are no pairs before the first Pull().
-  PreparedBody(const Prepared& prepared, const Body& body,
+  // Of a stream of `most_pairs`. There are no pairs before the first Pull().
+  PreparedBody(const Prepared& prepared, const Body& body, uint32_t most_pairs,
                std::unique_ptr<EigenPairStream> stream);
   PreparedBody(const PreparedBody&) = delete;
   PreparedBody& operator=(const PreparedBody&) = delete;
 
-  // Sees to it that the pairs suffice for regions of at least `area_share` of
-  // the body, unless the stream ends before; all pairs for a share of 0. What
-  // was read from context().pairs before is not to be used any more. Errors:
-  // those of EigenPairStream.
+  // Sees to it that the usable pairs suffice for regions of at least
+  // `area_share` of the body, unless the stream ends before. Errors: those of
+  // EigenPairStream. REQUIRES: area_share > 0.
   absl::Status Pull(double area_share, double delta, const CancelToken& cancel,
                     const ProgressCallback& progress);
 
   const SplitContext& context() const { return context_; }
   double area() const { return area_; }    // in units of the positions
   double share() const { return share_; }  // of the area of all bodies
+  // What may be pulled in all, the constant pair not counted.
+  uint32_t most_pairs() const { return most_pairs_; }
 
  private:
   struct Own;
 
+  absl::Status PullUpTo(double bound, const CancelToken& cancel,
+                        const ProgressCallback& progress);
+
   const double area_;
   const double share_;
+  const uint32_t most_pairs_;
   const std::shared_ptr<const Own> own_;
   std::unique_ptr<EigenPairStream> stream_;  // null once it has ended
-  EigenPairs pairs_;
+  PulledPairs pulled_;
   const SplitContext context_;
 };
 
@@ -118,8 +123,9 @@ struct Job {
   operator Telling() const { return {prepared, reporter, sink}; }
 };
 
-// PreparedBody::Pull() for all bodies, reported as Stage::kSpectrum.
-absl::Status PullPairs(const Job& job, double area_share);
+// Pulls what the bodies take as a whole, reported as Stage::kSpectrum; regions
+// of them take more.
+absl::Status PullPairs(const Job& job);
 
 // Labels and skeleton of a level, to the sink.
 absl::Status EmitLevel(const Telling& to, const SegmentTree& tree,

@@ -17,19 +17,23 @@ namespace {
 
 // The tree of every body, in their order.
 absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
+  const SegmentationOptions& options = job.options;
   std::vector<MergeTree> trees;
   double before = 0;
   for (const auto& body : job.bodies) {
     absl::Status reported;
+    const auto pull = [&](double area_share, const ProgressCallback& progress) {
+      return body->Pull(area_share, options.split.delta, job.cancel, progress);
+    };
+    const auto report = [&](double share) {
+      const double done = before + body->share() * share;
+      reported.Update(job.reporter.Progress(
+          Stage::kSegments, kSpectrumDone + (1 - kSpectrumDone) * done));
+    };
     MARROW_ASSIGN_OR_RETURN(
         MergeTree merged,
-        BuildMergeTree(body->context(), job.options.split, body->area(),
-                       job.options.levels, job.cancel, [&](double share) {
-                         const double done = before + body->share() * share;
-                         reported.Update(job.reporter.Progress(
-                             Stage::kSegments,
-                             kSpectrumDone + (1 - kSpectrumDone) * done));
-                       }));
+        BuildMergeTree(body->context(), options.split, body->area(),
+                       options.levels, job.cancel, pull, report));
     MARROW_RETURN_IF_ERROR(reported);
     trees.push_back(std::move(merged));
     before += body->share();
@@ -48,7 +52,7 @@ SegmentTree OneTree(const Prepared& prepared, std::vector<MergeTree>& trees) {
 }  // namespace
 
 absl::Status MergeLevels(const Job& job) {
-  MARROW_RETURN_IF_ERROR(PullPairs(job, 0));
+  MARROW_RETURN_IF_ERROR(PullPairs(job));
   MARROW_ASSIGN_OR_RETURN(std::vector<MergeTree> trees, BodyTrees(job));
   MergedPieces pieces = JoinPieces(job.prepared.bodies, trees);
   const size_t count =

@@ -53,10 +53,11 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
   const Prepared& prepared =
       workspace->prepared.emplace(Prepare(canonical, bodies));
-  for (const Body& body : bodies.bodies)
+  for (const Body& body : bodies.bodies) {
+    const uint32_t most = PairsOfBody(body, options.eigen_pairs);
     workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
-        prepared, body,
-        pairs.Open(*body.canonical, PairsOfBody(body, options.eigen_pairs))));
+        prepared, body, most, pairs.Open(*body.canonical, most)));
+  }
   const Job job{workspace, prepared, workspace->prepared_bodies,
                 options,   cancel,   reporter,
                 sink};

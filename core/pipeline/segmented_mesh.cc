@@ -117,7 +117,7 @@ std::vector<uint32_t> SegmentedMesh::MedialStructure(
 uint32_t SegmentedMesh::EigenPairCount() const {
   uint32_t most = 0;
   for (const auto& body : workspace_->prepared_bodies)
-    most = std::max(most, body->context().pairs.NumPairs() - 1);
+    most = std::max(most, body->most_pairs());
   return most;
 }
 
@@ -130,7 +130,7 @@ uint64_t SegmentedMesh::Bytes() const {
                    sizeof(uint32_t) * (canonical().face_map.size() +
                                        canonical().point_map.size());
   for (const auto& body : workspace_->prepared_bodies)
-    bytes += body->context().pairs.Bytes();
+    bytes += body->context().pulled.pairs->Bytes();
   for (const SegmentNode& node : tree_.nodes)
     bytes +=
         sizeof(SegmentNode) +

@@ -62,7 +62,9 @@ class SegmentedMesh {
   absl::StatusOr<CutResult> Cut(const CutSpec& spec,
                                 const CancelToken& cancel) const;
 
-  // Of its largest body, without the constant one.
+  // Those that could be used of its largest body, without the constant one:
+  // what was asked for, or all that there are. Fewer were computed where fewer
+  // were needed.
   uint32_t EigenPairCount() const;
   // Memory it holds, the eigen-pairs among it; good to a fifth.
   uint64_t Bytes() const;

@@ -20,16 +20,6 @@ struct Growing {
   TreeBuilder builder;
   bool done = false;
 
-  // As a share of the body, the least area of those that will be tried next.
-  double LeastShare() const {
-    double least = body->area();
-    for (const SegmentNode& node : builder.tree().nodes)
-      if (node.level == builder.depth() && node.area > 0 &&
-          node.faces.size() >= kMinRegionFaces)
-        least = std::min(least, node.area);
-    return least / body->area();
-  }
-
   // Whether it became deeper. Not tried again once it did not.
   absl::StatusOr<bool> Deepen(const CancelToken& cancel,
                               const std::function<void(double)>& progress) {
@@ -59,11 +49,11 @@ class Forest {
     for (Growing& growing : bodies_) {
       const double share = growing.body->share();
       if (!growing.done) {
-        MARROW_RETURN_IF_ERROR(
-            growing.body->Pull(growing.LeastShare(), job.options.split.delta,
-                               job.cancel, [&](double done) {
-                                 progress(std::min(1.0, before + share * done));
-                               }));
+        MARROW_RETURN_IF_ERROR(growing.body->Pull(
+            growing.builder.LeastShare(), job.options.split.delta, job.cancel,
+            [&](double done) {
+              progress(std::min(1.0, before + share * done));
+            }));
       }
       before += share;
     }
@@ -121,8 +111,7 @@ class Forest {
 }  // namespace
 
 absl::Status SplitLevels(const Job& job) {
-  // What the bodies themselves take; regions of them take more.
-  MARROW_RETURN_IF_ERROR(PullPairs(job, 1));
+  MARROW_RETURN_IF_ERROR(PullPairs(job));
   Forest forest(job);
   for (uint32_t level = 1; level <= job.options.levels; ++level) {
     absl::Status reported;

@@ -15,8 +15,11 @@ SolvedMesh Assemble(CanonicalMesh canonical,
                     std::shared_ptr<const EigenPairs> pairs) {
   Adjacency adjacency(canonical.mesh);
   std::vector<double> areas = FaceAreaShares(canonical.mesh);
-  return {std::move(canonical), std::move(adjacency), std::move(areas),
-          std::move(pairs)};
+  const uint32_t usable = pairs->NumPairs() - 1;
+  return {std::move(canonical),
+          std::move(adjacency),
+          std::move(areas),
+          {std::move(pairs), usable}};
 }
 
 }  // namespace

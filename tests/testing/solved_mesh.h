@@ -17,11 +17,11 @@ struct SolvedMesh {
   CanonicalMesh canonical;
   Adjacency adjacency;
   std::vector<double> areas;  // shares
-  std::shared_ptr<const EigenPairs> pairs;
+  PulledPairs pulled;         // all of them usable
 
   // Refers to this object.
   SplitContext context() const {
-    return {canonical.mesh, adjacency, *pairs, areas};
+    return {canonical.mesh, adjacency, pulled, areas};
   }
   std::vector<uint32_t> AllFaces() const;
 };

@@ -175,6 +175,26 @@ TEST(PipelineTest, LevelsTakeThePairsTheyNeedAndSayTheSame) {
   }
 }
 
+TEST(PipelineTest, MergingTakesThePairsOfItsPiecesAndSaysTheSame) {
+  for (const TriangleMesh& mesh :
+       {LimbCross(4), Apart(LimbCross(3), Icosphere(3))}) {
+    const std::string bytes = EncodeDraco(mesh);
+    SegmentationOptions options;
+    options.method = Method::kMerge;
+    CountedStreams pieces;
+    WholeSource whole;
+    RecordingSink stepwise, at_once;
+    ASSERT_TRUE(RunWith(bytes, options, stepwise, pieces).ok());
+    ASSERT_TRUE(RunWith(bytes, options, at_once, whole).ok());
+    EXPECT_EQ(stepwise.events, at_once.events);
+    ExpectSameTree(stepwise.tree, at_once.tree);
+    ASSERT_EQ(stepwise.levels.size(), at_once.levels.size());
+    for (size_t l = 0; l < stepwise.levels.size(); ++l)
+      EXPECT_EQ(stepwise.levels[l].face_labels, at_once.levels[l].face_labels);
+    EXPECT_LT(pieces.most, 150u);
+  }
+}
+
 TEST(PipelineTest, AMeshThatCannotBeSplitHasOneLevelOfOneNode) {
   const RecordingSink run = RunOn(SingleTriangle(), {});
   EXPECT_THAT(run.events, ElementsAre("mesh", "level 1", "tree"));
