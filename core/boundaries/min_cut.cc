@@ -20,23 +20,21 @@ constexpr double kRounding = 1e-12;
 MinCut::MinCut(uint32_t num_nodes) : source_(num_nodes), sink_(num_nodes + 1) {}
 
 void MinCut::Connect(uint32_t a, uint32_t b, double cost) {
-  AddArcs(a, b, cost, cost);
+  Add({{a, b}, {cost, cost}});
 }
 
 void MinCut::ConnectToSource(uint32_t node, double cost) {
-  AddArcs(node, source_, cost, 0);
+  Add({{node, source_}, {cost, 0}});
 }
 
 void MinCut::ConnectToSink(uint32_t node, double cost) {
-  AddArcs(sink_, node, cost, 0);
+  Add({{sink_, node}, {cost, 0}});
 }
 
-void MinCut::AddArcs(uint32_t from, uint32_t to, double room,
-                     double room_back) {
-  assert(room >= 0 && room_back >= 0);
-  arcs_.push_back({to, room});
-  arcs_.push_back({from, room_back});
-  least_room_ = std::max(least_room_, kRounding * room);
+void MinCut::Add(const Edge& edge) {
+  assert(edge.room[0] >= 0 && edge.room[1] >= 0);
+  edges_.push_back(edge);
+  least_room_ = std::max(least_room_, kRounding * edge.room[0]);
 }
 
 std::vector<MinCut::Side> MinCut::Solve() {
@@ -45,8 +43,8 @@ std::vector<MinCut::Side> MinCut::Solve() {
   // Full arcs first: the sink then leads nowhere, so nothing is sent back to
   // it.
   for (uint32_t k = first_[sink_]; k < first_[sink_ + 1]; ++k) {
-    excess_[sink_] = arcs_[out_[k]].room;
-    if (excess_[sink_] > 0) Push(sink_, out_[k]);
+    excess_[sink_] = arcs_[k].room;
+    if (excess_[sink_] > 0) Push(sink_, k);
   }
   LabelAll();
   while (!active_.empty()) {
@@ -68,14 +66,19 @@ std::vector<MinCut::Side> MinCut::Solve() {
   return sides;
 }
 
+// By the node they leave, so that a node's arcs lie side by side.
 void MinCut::Sort() {
   first_.assign(sink_ + 2, 0);
-  for (uint32_t i = 0; i < arcs_.size(); ++i) ++first_[arcs_[i ^ 1].to + 1];
+  for (const Edge& edge : edges_)
+    for (uint32_t end : edge.ends) ++first_[end + 1];
   for (size_t u = 1; u < first_.size(); ++u) first_[u] += first_[u - 1];
-  out_.resize(arcs_.size());
+  arcs_.resize(2 * edges_.size());
   std::vector<uint32_t> place(first_.begin(), first_.end() - 1);
-  for (uint32_t i = 0; i < arcs_.size(); ++i)
-    out_[place[arcs_[i ^ 1].to]++] = i;
+  for (const auto& [ends, room] : edges_) {
+    const uint32_t there = place[ends[0]]++, back = place[ends[1]]++;
+    arcs_[there] = {ends[1], back, room[0]};
+    arcs_[back] = {ends[0], there, room[1]};
+  }
 }
 
 void MinCut::LabelAll() {
@@ -87,8 +90,8 @@ void MinCut::LabelAll() {
   for (size_t i = 0; i < queue.size(); ++i) {
     const uint32_t u = queue[i];
     for (uint32_t k = first_[u]; k < first_[u + 1]; ++k) {
-      const uint32_t from = arcs_[out_[k]].to;
-      if (arcs_[out_[k] ^ 1].room <= least_room_ || label_[from] != kUnreached)
+      const auto [from, back, room] = arcs_[k];
+      if (label_[from] != kUnreached || arcs_[back].room <= least_room_)
         continue;
       label_[from] = label_[u] + 1;
       queue.push_back(from);
@@ -100,11 +103,11 @@ void MinCut::LabelAll() {
 void MinCut::Discharge(uint32_t node) {
   if (label_[node] == kUnreached) return;
   for (uint32_t& k = next_[node]; k < first_[node + 1]; ++k) {
-    const Arc& arc = arcs_[out_[k]];
+    const Arc& arc = arcs_[k];
     if (arc.room <= least_room_ || label_[arc.to] == kUnreached ||
         label_[node] != label_[arc.to] + 1)
       continue;
-    Push(node, out_[k]);
+    Push(node, k);
     if (excess_[node] == 0) return;
   }
   Lift(node);
@@ -116,8 +119,8 @@ void MinCut::Lift(uint32_t node) {
   next_[node] = first_[node];
   uint32_t least = kUnreached;
   for (uint32_t k = first_[node]; k < first_[node + 1]; ++k)
-    if (arcs_[out_[k]].room > least_room_)
-      least = std::min(least, label_[arcs_[out_[k]].to]);
+    if (arcs_[k].room > least_room_)
+      least = std::min(least, label_[arcs_[k].to]);
   // As far as there are nodes: it leads to the source no more.
   label_[node] = least < sink_ ? least + 1 : kUnreached;
 }
@@ -129,7 +132,7 @@ void MinCut::Push(uint32_t node, uint32_t arc) {
   excess_[node] -= flow;
   excess_[to] += flow;
   arcs_[arc].room -= flow;
-  arcs_[arc ^ 1].room += flow;
+  arcs_[arcs_[arc].back].room += flow;
 }
 
 // Whether the sink can be reached, full arcs or not.
@@ -139,7 +142,7 @@ std::vector<bool> MinCut::TouchSink() const {
   std::vector<uint32_t> queue = {sink_};
   for (size_t i = 0; i < queue.size(); ++i)
     for (uint32_t k = first_[queue[i]]; k < first_[queue[i] + 1]; ++k) {
-      const uint32_t v = arcs_[out_[k]].to;
+      const uint32_t v = arcs_[k].to;
       if (v == source_ || touches[v]) continue;
       touches[v] = true;
       queue.push_back(v);

@@ -2,6 +2,7 @@
 #ifndef MARROW_CORE_BOUNDARIES_MIN_CUT_H_
 #define MARROW_CORE_BOUNDARIES_MIN_CUT_H_
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <vector>
@@ -29,12 +30,17 @@ class MinCut {
   std::vector<Side> Solve();
 
  private:
+  struct Edge {
+    std::array<uint32_t, 2> ends;
+    std::array<double, 2> room;  // from the first to the second, and back
+  };
   struct Arc {
     uint32_t to;
-    double room;  // for more flow; the arc that goes back is arc ^ 1
+    uint32_t back;  // the arc that goes back
+    double room;    // for more flow
   };
 
-  void AddArcs(uint32_t from, uint32_t to, double room, double room_back);
+  void Add(const Edge& edge);
   void Sort();
   void LabelAll();
   void Discharge(uint32_t node);
@@ -44,9 +50,10 @@ class MinCut {
 
   uint32_t source_, sink_;
   double least_room_ = 0;
+  std::vector<Edge> edges_;
+  // Those that leave node u: first_[u] up to first_[u + 1].
   std::vector<Arc> arcs_;
-  // Arcs by the node they leave: out_[first_[u]] to out_[first_[u + 1]].
-  std::vector<uint32_t> first_, out_;
+  std::vector<uint32_t> first_;
   // Steps to the source over arcs with room, at least.
   std::vector<uint32_t> label_;
   std::vector<uint32_t> next_;  // the first arc worth a look
