@@ -53,10 +53,7 @@ class Competition {
       heap_.pop();
       if (owner_[next.face] != kNoIndex) continue;
       owner_[next.face] = next.front;
-      for (uint32_t e : region_.adjacency().FaceEdges(next.face))
-        if (FirstCrossing(e, next.front))
-          for (uint32_t f : region_.adjacency().EdgeFaces(e))
-            Push(f, next.front);
+      for (int i = 0; i < 3; ++i) Cross(next.face, i, next.front);
       for (const auto& [face, linked] : region_.LinksOf(next.face))
         Push(linked, next.front);
     }
@@ -67,9 +64,13 @@ class Competition {
 
  private:
   // An edge of k faces would be looked at k times for its k faces.
-  bool FirstCrossing(uint32_t edge, uint32_t front) {
-    return region_.adjacency().EdgeFaces(edge).size() <= 2 ||
-           crossed_.emplace(edge, front).second;
+  void Cross(uint32_t face, int i, uint32_t front) {
+    const uint32_t other = region_.Across(face)[i];
+    if (other != kNoIndex) return Push(other, front);
+    const uint32_t e = region_.adjacency().FaceEdges(face)[i];
+    const auto faces = region_.adjacency().EdgeFaces(e);
+    if (faces.size() > 2 && crossed_.emplace(e, front).second)
+      for (uint32_t f : faces) Push(f, front);
   }
 
   // A candidate that is there already would only be popped in vain.

@@ -75,7 +75,21 @@ struct StructureDistance::Index {
     }
   };
 
-  using Metric = nanoflann::L2_Simple_Adaptor<double, Cloud>;
+  // nanoflann's own adds up one number after the other.
+  struct Metric {
+    using ElementType = double;
+    using DistanceType = double;
+    using Row = Eigen::Map<const Eigen::Matrix<double, kDimensions, 1>>;
+
+    double evalMetric(const double* query, size_t i, size_t) const {
+      return (Row(query) - Row(&cloud.rows[i * kDimensions])).squaredNorm();
+    }
+    double accum_dist(double a, double b, size_t) const {
+      return (a - b) * (a - b);
+    }
+
+    const Cloud& cloud;
+  };
 
   explicit Index(std::vector<double> rows)
       : cloud{std::move(rows)}, tree(kDimensions, cloud) {}
@@ -104,10 +118,11 @@ double StructureDistance::From(uint32_t& point, uint32_t vertex,
                                double bound) const {
   const double* query = sketch_->Row(vertex);
   Nearest nearest{*this, vertex, bound};
-  const double first = Index::Metric(index_->cloud)
-                           .evalMetric(query, point, size_t{kDimensions});
+  const double first =
+      index_->tree.distance.evalMetric(query, point, kDimensions);
   if (first < nearest.worstDist()) nearest.addPoint(first, point);
-  index_->tree.findNeighbors(nearest, query, nanoflann::SearchParams());
+  if (points_.rows() > 1)
+    index_->tree.findNeighbors(nearest, query, nanoflann::SearchParams());
   point = nearest.point;
   return nearest.distance;
 }

@@ -31,6 +31,16 @@ Adjacency LocalAdjacency(const Adjacency& adjacency, uint32_t num_vertices,
   return Adjacency(topology);
 }
 
+std::vector<std::array<uint32_t, 3>> FacesAcross(const Adjacency& adjacency) {
+  std::vector<std::array<uint32_t, 3>> across(adjacency.NumFaces());
+  for (uint32_t f = 0; f < across.size(); ++f)
+    for (int i = 0; i < 3; ++i) {
+      const auto faces = adjacency.EdgeFaces(adjacency.FaceEdges(f)[i]);
+      across[f][i] = faces.size() == 2 ? faces[faces[0] == f] : kNoIndex;
+    }
+  return across;
+}
+
 std::vector<std::array<uint32_t, 2>> LocalLinks(
     const std::vector<uint32_t>& faces, const FaceLinks& links) {
   std::vector<std::array<uint32_t, 2>> local;
@@ -60,6 +70,7 @@ Region::Region(const TriangleMesh& mesh, const Adjacency& adjacency,
       vertices_(vertices.Members()),
       triangles_(LocalTriangles(mesh, faces, vertices)),
       local_(LocalAdjacency(adjacency, NumVertices(), triangles_)),
+      across_(FacesAcross(local_)),
       loop_(NumVertices(), kNoIndex) {
   areas_.reserve(faces.size());
   for (uint32_t f : faces) areas_.push_back(face_areas[f]);

@@ -36,6 +36,9 @@ class Region {
   const std::vector<double>& areas() const { return areas_; }
   double area() const { return area_; }
   const Adjacency& adjacency() const { return local_; }
+  // The face across each edge of f; kNoIndex where there is none, and where
+  // there are several, which adjacency() knows.
+  const std::array<uint32_t, 3>& Across(uint32_t f) const { return across_[f]; }
 
   // Pairs of local faces of different shells that count as neighbours, both
   // ways, ascending.
@@ -63,6 +66,7 @@ class Region {
   std::vector<double> areas_;
   double area_ = 0;
   Adjacency local_;
+  std::vector<std::array<uint32_t, 3>> across_;
   std::vector<std::array<uint32_t, 2>> links_;
   // Local vertex -> its loop's least vertex; kNoIndex off the boundary.
   std::vector<uint32_t> loop_;
