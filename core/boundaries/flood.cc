@@ -9,9 +9,8 @@ Flood::Flood(const TriangleMesh& mesh, const Adjacency& adjacency,
     : mesh_(mesh),
       adjacency_(adjacency),
       positions_(positions),
-      vertex_stamp_(mesh.NumVertices(), 0),
-      face_stamp_(mesh.NumFaces(), 0),
-      distance_(mesh.NumVertices(), 0) {}
+      marks_(mesh.NumVertices()),
+      face_stamp_(mesh.NumFaces(), 0) {}
 
 void Flood::Run(std::span<const uint32_t> edges, double limit,
                 const std::function<bool(uint32_t)>& within) {
@@ -25,32 +24,31 @@ void Flood::Run(std::span<const uint32_t> edges, double limit,
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<Entry>());
     const auto [distance, v] = heap_.back();
     heap_.pop_back();
-    if (distance > distance_[v]) continue;
+    if (distance > marks_[v].distance) continue;
     for (uint32_t f : adjacency_.VertexFaces(v)) {
       if (!within(f)) continue;
       if (face_stamp_[f] != run_) faces_.push_back(f);
       face_stamp_[f] = run_;
       for (uint32_t u : mesh_.faces[f])
-        if (u != v)
+        if (u != v && !IsNear(u, distance))
           Reach(u, distance + (positions_.row(u) - positions_.row(v)).norm(),
                 limit);
     }
   }
   for (uint32_t f : faces_)
     for (uint32_t v : mesh_.faces[f])
-      farthest_ = std::max(farthest_, std::min(limit, distance_[v]));
+      farthest_ = std::max(farthest_, std::min(limit, marks_[v].distance));
 }
 
 double Flood::DistanceOf(uint32_t face) const {
   double sum = 0;
-  for (uint32_t v : mesh_.faces[face]) sum += distance_[v];
+  for (uint32_t v : mesh_.faces[face]) sum += marks_[v].distance;
   return sum / 3;
 }
 
 void Flood::Reach(uint32_t vertex, double distance, double limit) {
-  if (vertex_stamp_[vertex] == run_ && distance_[vertex] <= distance) return;
-  vertex_stamp_[vertex] = run_;
-  distance_[vertex] = distance;
+  if (IsNear(vertex, distance)) return;
+  marks_[vertex] = {run_, distance};
   if (distance >= limit) return;
   heap_.push_back({distance, vertex});
   std::push_heap(heap_.begin(), heap_.end(), std::greater<Entry>());

@@ -37,15 +37,24 @@ class Flood {
  private:
   using Entry = std::pair<double, uint32_t>;
 
+  // Together, for they are read together.
+  struct Mark {
+    uint32_t run = 0;  // the others count where this is run_
+    double distance = 0;
+  };
+
+  // Whether the vertex is known to be that near.
+  bool IsNear(uint32_t vertex, double distance) const {
+    return marks_[vertex].run == run_ && marks_[vertex].distance <= distance;
+  }
   void Reach(uint32_t vertex, double distance, double limit);
 
   const TriangleMesh& mesh_;
   const Adjacency& adjacency_;
   const Positions& positions_;
-  // An entry counts where its stamp is run_.
   uint32_t run_ = 0;
-  std::vector<uint32_t> vertex_stamp_, face_stamp_;
-  std::vector<double> distance_;
+  std::vector<Mark> marks_;           // of the vertices
+  std::vector<uint32_t> face_stamp_;  // reached where it is run_
   std::vector<Entry> heap_;
   std::vector<uint32_t> faces_;
   double farthest_ = 0;
