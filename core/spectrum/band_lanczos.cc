@@ -26,6 +26,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
+#include "core/spectrum/inverse_iteration.h"
 #include "core/spectrum/lanczos_basis.h"
 
 namespace marrow {
@@ -40,8 +41,9 @@ constexpr double kKnownShare = 0.02;
 // A pair's residual is at most this share of the mean distance, or neighbours
 // are not told apart.
 constexpr double kResolvedShare = 0.05;
-// Looking for convergence in a basis of fewer vectors a pair is in vain.
-constexpr double kFirstLook = 2;
+// Looking for convergence in a basis of fewer vectors a pair is in vain: at
+// the usual tolerance it takes 3.2 to 4.2.
+constexpr double kFirstLook = 3.2;
 // Residuals fall by less than so many decades a step, or as fast as they last
 // did; a look costs as much as a step, so steps that cannot be the last go
 // unseen.
@@ -56,6 +58,7 @@ constexpr double kMostExcess = 6;
 constexpr int kTogether = 3;
 // The estimate of a residual leaves out rounding and the other pairs' share.
 constexpr double kEstimateShare = 0.5;
+constexpr int kMostRefinements = 4;
 
 // Ritz pairs on one side of the shift, the nearest first.
 struct Side {
@@ -248,7 +251,15 @@ class BandFinder {
                           ? -kInfinity
                           : below_.value[num_below_];
     MARROW_RETURN_IF_ERROR(WriteVectors(Coefficients(chosen), band));
+    if (Worst(band) > request_.tolerance) MARROW_RETURN_IF_ERROR(Refine(band));
+    if (const double worst = Worst(band); !(worst <= request_.tolerance))
+      return absl::InternalError(absl::StrCat("a pair about ", factor_.shift(),
+                                              " has the residual ", worst));
     return band;
+  }
+
+  static double Worst(const Band& band) {
+    return *std::max_element(band.residuals.begin(), band.residuals.end());
   }
 
   double NextAbove() const {
@@ -279,11 +290,7 @@ class BandFinder {
 
   absl::Status WriteVectors(const RowMajorMatrix& coefficients, Band& band) {
     const size_t count = band.values.size();
-    if (request_.precise) {
-      band.precise_vectors.resize(matrix_.n * count);
-    } else {
-      band.vectors.resize(matrix_.n * count);
-    }
+    band.vectors.resize(matrix_.n * count);
     band.residuals.resize(count);
     const int width = kTogether * kBlock;
     for (size_t begin = 0; begin < count; begin += width) {
@@ -293,11 +300,75 @@ class BandFinder {
       some.leftCols(there) = coefficients.middleCols(begin, there);
       MARROW_RETURN_IF_ERROR(WriteBlocks(some, begin, band));
     }
-    const double worst =
-        *std::max_element(band.residuals.begin(), band.residuals.end());
-    if (worst <= request_.tolerance) return absl::OkStatus();
-    return absl::InternalError(absl::StrCat("a pair about ", factor_.shift(),
-                                            " has the residual ", worst));
+    return absl::OkStatus();
+  }
+
+  // Inverse iteration takes away what rounding left of the residuals, which is
+  // much where the entries of the matrix are of very different sizes. Beside
+  // the pairs of the band, all others are iterated that are as near to the
+  // shift: what is left of those in the band's would grow.
+  absl::Status Refine(Band& band) {
+    const double reach =
+        std::max(Distance(below_, num_below_), Distance(above_, num_above_));
+    const int low = CountWithin(below_, reach);
+    std::vector<int> chosen(below_.index.rend() - low, below_.index.rend());
+    chosen.insert(chosen.end(), above_.index.begin(),
+                  above_.index.begin() + CountWithin(above_, reach));
+    MARROW_ASSIGN_OR_RETURN(Window window, MakeWindow(chosen));
+    for (int i = 0; i < kMostRefinements && Worst(band) > request_.tolerance;
+         ++i) {
+      MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
+      MARROW_RETURN_IF_ERROR(TakeVectors(window, low - num_below_, band));
+    }
+    return absl::OkStatus();
+  }
+
+  // Of the last of `count` pairs from the shift.
+  double Distance(const Side& side, int count) const {
+    return count > 0 ? std::abs(side.value[count - 1] - factor_.shift()) : 0;
+  }
+
+  int CountWithin(const Side& side, double reach) const {
+    int count = 0;
+    while (HasNext(side, count) && Distance(side, count + 1) <= reach) ++count;
+    return count;
+  }
+
+  absl::StatusOr<Window> MakeWindow(const std::vector<int>& chosen) {
+    const int count = static_cast<int>(chosen.size());
+    const RowMajorMatrix coefficients = Coefficients(chosen);
+    Window window;
+    window.values = Eigen::VectorXd::Zero(count);
+    window.vectors =
+        RowMajorMatrix::Zero(matrix_.n, Window::PaddedWidth(count));
+    RowMajorMatrix block = RowMajorMatrix::Zero(coefficients.rows(), kBlock);
+    for (int begin = 0; begin < count; begin += kBlock) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      const int width = std::min(kBlock, count - begin);
+      block.setZero();
+      block.leftCols(width) = coefficients.middleCols(begin, width);
+      double* Y = basis_.Block(basis_.num_blocks());
+      basis_.Combine(block, {&Y, 1});
+      window.vectors.middleCols(begin, kBlock) =
+          Eigen::Map<const RowMajorMatrix>(Y, matrix_.n, kBlock);
+    }
+    return window;
+  }
+
+  // The band's pairs, from `first` of the window on.
+  absl::Status TakeVectors(const Window& window, int first, Band& band) {
+    const int count = static_cast<int>(band.values.size());
+    for (int k = 0; k < count; ++k) band.values[k] = window.values[first + k];
+    double* Y = basis_.Block(basis_.num_blocks());
+    double* scratch = basis_.Block(basis_.num_blocks() + 1);
+    Eigen::Map<RowMajorMatrix> block(Y, matrix_.n, kBlock);
+    for (int begin = 0; begin < count; begin += kBlock) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      const int width = std::min(kBlock, count - begin);
+      block.leftCols(width) = window.vectors.middleCols(first + begin, width);
+      WriteBlock(begin, Y, scratch, band);
+    }
+    return absl::OkStatus();
   }
 
   // Vectors `begin` and after of the band, and their residuals.
@@ -328,11 +399,7 @@ class BandFinder {
     std::copy_n(band.values.begin() + begin, width, lambda.begin());
     for (int i = 0; i < matrix_.n; ++i) {
       const double* row = Y + static_cast<size_t>(i) * kBlock;
-      if (request_.precise) {
-        std::copy_n(row, width, &band.precise_vectors[i * count + begin]);
-      } else {
-        std::copy_n(row, width, &band.vectors[i * count + begin]);
-      }
+      std::copy_n(row, width, &band.vectors[i * count + begin]);
       for (int c = 0; c < kBlock; ++c)
         residual[static_cast<size_t>(i) * kBlock + c] = lambda[c] * row[c];
     }

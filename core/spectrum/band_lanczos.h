@@ -27,8 +27,6 @@ struct BandRequest {
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.
   double tolerance = 0;
-  // Whether the vectors are wanted in double.
-  bool precise = false;
   // Steps beyond those that seem enough, and another start: for a band that
   // was found to lack a pair.
   int extra_steps = 0;
@@ -43,10 +41,8 @@ struct Band {
   // the end may be anywhere.
   double next_below = 0;
   double next_above = 0;
-  // n x values.size(), row-major, orthonormal in double; in one of these, as
-  // the request has it.
+  // n x values.size(), row-major, orthonormal before they were rounded.
   std::vector<float> vectors;
-  std::vector<double> precise_vectors;
   // Of each pair before it was rounded, in units of max(lambda, lambda_1).
   std::vector<double> residuals;
 };

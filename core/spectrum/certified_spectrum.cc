@@ -5,9 +5,13 @@
 #include "core/spectrum/certified_spectrum.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <new>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
@@ -46,6 +50,12 @@ absl::Status Disagreement(double shift, int counted, int found) {
                     kReasonSolverNotConverged);
 }
 
+absl::Status OutOfMemory(int count, int vertices) {
+  return absl::ResourceExhaustedError(
+      absl::StrCat("not enough memory for ", count,
+                   " eigen-pairs in double of ", vertices, " vertices"));
+}
+
 // The entry of largest magnitude (the first, where several are) is positive.
 void FixSign(Eigen::Ref<Eigen::VectorXd> vector) {
   Eigen::Index at = 0;
@@ -80,7 +90,6 @@ class Certifier {
         count_(count),
         laplacian_(laplacian),
         structure_(structure),
-        factor_(structure),
         sqrt_mass_(laplacian.M.cwiseSqrt()),
         residual_(residual),
         cancel_(cancel) {
@@ -91,12 +100,12 @@ class Certifier {
   }
 
   absl::StatusOr<CertifiedSpectrum> Certify(const ProgressCallback& progress) {
-    MeasureResiduals(laplacian_, 0, 1, spectrum_);
     for (int first = 1, end; first < count_; first = end) {
       end = EndOfWindow(first);
-      MARROW_RETURN_IF_ERROR(Refine(first, end));
-      progress(kAnalysisShare + (1 - kAnalysisShare) * end / count_);
+      windows_.push_back({first, end});
     }
+    MARROW_RETURN_IF_ERROR(RefineAll(progress));
+    MARROW_RETURN_IF_ERROR(OrthogonaliseWindows());
     MARROW_RETURN_IF_ERROR(Count());
     return std::move(spectrum_);
   }
@@ -131,32 +140,66 @@ class Certifier {
   }
 
   // Factorises in the gap below `pair`.
-  absl::Status FactoriseBelow(int pair) {
+  absl::Status FactoriseBelow(int pair, SupernodalFactor& factor) {
+    Team alone(1);
     MARROW_RETURN_IF_ERROR(
-        FactoriseNear(MiddleOfGap(pair), factor_, team_, cancel_));
-    const int counted = factor_.negative_pivots();
-    if (counted != pair && Gap(pair) > kCountableGap * factor_.shift())
-      return Disagreement(factor_.shift(), counted, pair);
+        FactoriseNear(MiddleOfGap(pair), factor, alone, cancel_));
+    const int counted = factor.negative_pivots();
+    if (counted != pair && Gap(pair) > kCountableGap * factor.shift())
+      return Disagreement(factor.shift(), counted, pair);
     return absl::OkStatus();
   }
 
-  absl::Status Refine(int first, int end) {
+  // Two threads, where two factors are no matter, take every other window each.
+  absl::Status RefineAll(const ProgressCallback& progress) {
+    const int workers = structure_.branches.empty() ? 2 : 1;
+    std::atomic<int> done{0};
+    std::vector<absl::Status> status(workers);
+    std::vector<std::thread> others;
+    for (int w = 1; w < workers; ++w)
+      others.emplace_back(
+          [&, w] { status[w] = RefineSome(w, workers, [&] { ++done; }); });
+    status[0] = RefineSome(0, workers, [&] {
+      progress(kAnalysisShare + (1 - kAnalysisShare) * ++done /
+                                    static_cast<double>(windows_.size()));
+    });
+    for (std::thread& other : others) other.join();
+    for (const absl::Status& each : status) MARROW_RETURN_IF_ERROR(each);
+    return absl::OkStatus();
+  }
+
+  absl::Status RefineSome(int worker, int workers,
+                          const std::function<void()>& on_window) {
+    try {
+      SupernodalFactor factor(structure_);
+      for (size_t i = worker; i < windows_.size(); i += workers) {
+        MARROW_RETURN_IF_ERROR(
+            Refine(windows_[i].first, windows_[i].end, factor));
+        on_window();
+      }
+    } catch (const std::bad_alloc&) {
+      return OutOfMemory(count_, structure_.n);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status Refine(int first, int end, SupernodalFactor& factor) {
     const Eigen::VectorXd& values = pairs_.eigenvalues;
     const double middle = 0.5 * (values[first] + values[end - 1]);
-    MARROW_RETURN_IF_ERROR(FactoriseBelow(BestGap(first, end, middle)));
-    const double reach = kReach * std::max(values[end - 1] - factor_.shift(),
-                                           factor_.shift() - values[first]);
+    MARROW_RETURN_IF_ERROR(FactoriseBelow(BestGap(first, end, middle), factor));
+    const double reach = kReach * std::max(values[end - 1] - factor.shift(),
+                                           factor.shift() - values[first]);
     int low = first, high = end;
     while (low > 0 && first - low < kMostGuards &&
-           values[low] > factor_.shift() - reach)
+           values[low] > factor.shift() - reach)
       --low;
     while (high < values.size() && high - end < kMostGuards &&
-           values[high - 1] < factor_.shift() + reach)
+           values[high - 1] < factor.shift() + reach)
       ++high;
     Window window = MakeWindow(low, high);
     double last = 1;
     for (int i = 0; i < kMostIterations; ++i) {
-      MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
+      MARROW_RETURN_IF_ERROR(IterateInversely(factor, window, cancel_));
       Take(window, low, first, end);
       const double worst = MeasureResiduals(laplacian_, first, end, spectrum_);
       if (worst <= residual_ || worst > kWorthwhile * last) break;
@@ -190,42 +233,67 @@ class Certifier {
         phi[v] = window.vectors(i, k - low) / sqrt_mass_[v];
       }
       phi.array() -= laplacian_.M.dot(phi);
-      FixSign(phi);
       spectrum_.eigenvalues[k] = window.values[k - low];
     }
+  }
+
+  // Windows are orthogonal to each other as far as their residuals go over the
+  // gap between them. Each is freed of those below it.
+  absl::Status OrthogonaliseWindows() {
+    auto& phi = spectrum_.eigenvectors;
+    for (const auto& [first, end] : windows_) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      if (first > 1) {
+        const auto below = phi.leftCols(first);
+        auto own = phi.middleCols(first, end - first);
+        const Eigen::MatrixXd products =
+            below.transpose() * (laplacian_.M.asDiagonal() * own);
+        own.noalias() -= below * products;
+      }
+      for (int k = first; k < end; ++k) FixSign(phi.col(k));
+      MeasureResiduals(laplacian_, first, end, spectrum_);
+    }
+    MeasureResiduals(laplacian_, 0, 1, spectrum_);
+    return absl::OkStatus();
   }
 
   // Counts beyond the last pair; where it has equals there, below it, at the
   // last gap that a count can tell.
   absl::Status Count() {
+    SupernodalFactor factor(structure_);
+    Team alone(1);
     const double margin = kCountableGap * spectrum_.eigenvalues[count_ - 1];
     int pair = count_;
     if (pair == pairs_.eigenvalues.size()) {
       MARROW_RETURN_IF_ERROR(FactoriseNear(
-          spectrum_.eigenvalues[count_ - 1] + margin, factor_, team_, cancel_));
-      if (factor_.negative_pivots() < count_)
-        return Disagreement(factor_.shift(), factor_.negative_pivots(), count_);
-      if (factor_.negative_pivots() > count_) --pair;
+          spectrum_.eigenvalues[count_ - 1] + margin, factor, alone, cancel_));
+      if (factor.negative_pivots() < count_)
+        return Disagreement(factor.shift(), factor.negative_pivots(), count_);
+      if (factor.negative_pivots() > count_) --pair;
     }
     if (pair < pairs_.eigenvalues.size()) {
       while (pair > 1 && Gap(pair) <= 4 * margin) --pair;
-      MARROW_RETURN_IF_ERROR(FactoriseBelow(pair));
+      MARROW_RETURN_IF_ERROR(FactoriseBelow(pair, factor));
     }
-    spectrum_.bound = factor_.shift();
+    spectrum_.bound = factor.shift();
     spectrum_.count_below_bound =
-        static_cast<uint32_t>(factor_.negative_pivots());
+        static_cast<uint32_t>(factor.negative_pivots());
     return absl::OkStatus();
   }
+
+  struct WindowRange {
+    int first;
+    int end;
+  };
 
   const EigenPairs& pairs_;
   const int count_;
   const Laplacian& laplacian_;
   const SupernodalStructure& structure_;
-  SupernodalFactor factor_;
-  Team team_{1};
   const Eigen::VectorXd sqrt_mass_;
   const double residual_;
   const CancelToken& cancel_;
+  std::vector<WindowRange> windows_;
   CertifiedSpectrum spectrum_;
 };
 
@@ -305,9 +373,7 @@ absl::StatusOr<CertifiedSpectrum> CertifySpectrum(
     report(1);
     return spectrum;
   } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("not enough memory for ", count,
-                     " eigen-pairs in double of ", n, " vertices"));
+    return OutOfMemory(count, n);
   }
 }
 

@@ -128,7 +128,6 @@ class Slicer : public SpectrumSlicer {
   static BandRequest CommonRequest(const SlicingOptions& options) {
     BandRequest request;
     request.tolerance = options.tolerance;
-    request.precise = options.precise;
     return request;
   }
 

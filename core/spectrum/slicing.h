@@ -19,8 +19,6 @@ struct SlicingOptions {
   int threads = 2;
   // What the residual of a pair may be, in units of max(lambda, lambda_1).
   double tolerance = 1e-4;
-  // Whether vectors are kept in double.
-  bool precise = false;
   // What one factor may take; there is one a thread, or one in all where two
   // would be too much.
   size_t max_factor_bytes = size_t{1} << 30;

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
 #include "core/spectrum/reference_solver.h"
@@ -58,18 +57,13 @@ void RemoveConstant(const Eigen::VectorXd& inverse_sqrt_mass,
   }
 }
 
-template <typename Scalar>
-using Vectors =
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 // Of the columns from `first` on: the entry of largest magnitude (the first,
 // where several are) is positive. The constant pair, which is known exactly, is
 // exact.
-template <typename Scalar>
 void Finish(Eigen::Index first, Eigen::VectorXd& values,
-            Vectors<Scalar>& vectors) {
+            EigenvectorMatrix& vectors) {
   const Eigen::Index count = vectors.cols() - first;
-  using Row = Eigen::Matrix<Scalar, 1, Eigen::Dynamic>;
+  using Row = Eigen::RowVectorXf;
   Row largest = Row::Zero(count);
   for (Eigen::Index v = 0; v < vectors.rows(); ++v)
     for (Eigen::Index k = 0; k < count; ++k)
@@ -84,18 +78,11 @@ void Finish(Eigen::Index first, Eigen::VectorXd& values,
   values[0] = 0;
 }
 
-// Where a part's vectors are.
-const float* VectorsOf(const Band& band, float) { return band.vectors.data(); }
-const double* VectorsOf(const Band& band, double) {
-  return band.precise_vectors.data();
-}
-
 // Appends the parts, in the mesh's order and scaled, but for what is beyond
 // `most` pairs. Empties the parts as it goes.
-template <typename Scalar>
 void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
             const Eigen::VectorXd& scale, Eigen::Index most,
-            Eigen::VectorXd& values, Vectors<Scalar>& vectors) {
+            Eigen::VectorXd& values, EigenvectorMatrix& vectors) {
   Eigen::Index column = values.size(), count = column;
   for (const SpectrumPart& part : parts) count += part.end - part.first;
   count = std::min(count, most);
@@ -107,12 +94,12 @@ void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
         std::min<Eigen::Index>(part.end - part.first, count - column));
     for (int k = 0; k < width; ++k)
       values[column + k] = part.band.values[part.first + k];
-    const Scalar* rows = VectorsOf(part.band, Scalar());
+    const float* rows = part.band.vectors.data();
     for (Eigen::Index i = 0; i < scale.size(); ++i) {
-      const Scalar* row = rows + i * stride + part.first;
+      const float* row = rows + i * stride + part.first;
       const int v = order[i];
       for (int k = 0; k < width; ++k)
-        vectors(v, column + k) = static_cast<Scalar>(row[k] * scale[v]);
+        vectors(v, column + k) = static_cast<float>(row[k] * scale[v]);
     }
     part.band = {};
     column += width;
@@ -240,69 +227,6 @@ class SolverStream : public EigenPairStream {
   std::shared_ptr<const EigenPairs> pairs_;
 };
 
-// Bands are orthogonal to each other as far as their residuals go over the gap
-// between them. `ends` are the pairs up to the end of each band; every band is
-// freed of those below it.
-absl::Status OrthogonaliseBands(const std::vector<Eigen::Index>& ends,
-                                const Eigen::VectorXd& mass,
-                                const CancelToken& cancel,
-                                Vectors<double>& vectors) {
-  constexpr Eigen::Index kTogether = 16;
-  for (size_t k = 1; k < ends.size(); ++k)
-    for (Eigen::Index c = ends[k - 1]; c < ends[k]; c += kTogether) {
-      MARROW_RETURN_IF_ERROR(cancel.Check());
-      const auto below = vectors.leftCols(ends[k - 1]);
-      auto some = vectors.middleCols(c, std::min(kTogether, ends[k] - c));
-      const Eigen::MatrixXd products =
-          below.transpose() * (mass.asDiagonal() * some);
-      some.noalias() -= below * products;
-    }
-  return absl::OkStatus();
-}
-
-// In the M^-1 norm; of the constant pair 0.
-absl::StatusOr<Eigen::VectorXd> Residuals(const SymmetricProblem& problem,
-                                          const CancelToken& cancel,
-                                          const CertifiedPairs& pairs) {
-  const Eigen::VectorXd& lambda = pairs.eigenvalues;
-  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(lambda.size());
-  for (Eigen::Index k = 1; k < lambda.size(); ++k) {
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-    const Eigen::VectorXd y =
-        pairs.eigenvectors.col(k).cwiseQuotient(problem.inverse_sqrt_mass);
-    residuals[k] =
-        (problem.A * y - lambda[k] * y).norm() / std::max(lambda[k], lambda[1]);
-  }
-  return residuals;
-}
-
-absl::Status SliceCertified(const SymmetricProblem& problem,
-                            const double* positions, int pairs,
-                            double tolerance, const CancelToken& cancel,
-                            const ShareCallback& report,
-                            CertifiedPairs& result) {
-  SlicingOptions options = OptionsFor(0.5 * tolerance);
-  options.precise = true;
-  MARROW_ASSIGN_OR_RETURN(
-      const auto slicer,
-      SpectrumSlicer::Create(problem.A, positions, pairs, options, cancel));
-  MARROW_ASSIGN_OR_RETURN(std::vector<SpectrumPart> parts,
-                          slicer->Find({pairs}, cancel, report));
-  std::vector<Eigen::Index> ends;
-  for (const SpectrumPart& part : parts) {
-    result.counts.insert(result.counts.end(), part.counts.begin(),
-                         part.counts.end());
-    const Eigen::Index before = ends.empty() ? 0 : ends.back();
-    ends.push_back(
-        std::min<Eigen::Index>(pairs, before + part.end - part.first));
-  }
-  Append(std::move(parts), slicer->order(), problem.inverse_sqrt_mass, pairs,
-         result.eigenvalues, result.eigenvectors);
-  return OrthogonaliseBands(
-      ends, problem.inverse_sqrt_mass.cwiseAbs2().cwiseInverse(), cancel,
-      result.eigenvectors);
-}
-
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
@@ -315,38 +239,6 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
 std::unique_ptr<EigenPairStream> SolverEigenPairSource::Open(
     const CanonicalMesh& mesh, uint32_t count) {
   return std::make_unique<SolverStream>(mesh, count, tolerance_);
-}
-
-absl::StatusOr<CertifiedPairs> SolveCertified(
-    const CanonicalMesh& mesh, uint32_t count, double tolerance,
-    const CancelToken& cancel, const ProgressCallback& progress) {
-  const int n = static_cast<int>(mesh.mesh.NumVertices());
-  const int pairs = std::min(static_cast<int>(count) + 1, n);
-  MARROW_ASSIGN_OR_RETURN(const SymmetricProblem problem,
-                          MakeProblem(mesh.mesh, cancel));
-  CertifiedPairs result;
-  result.area = mesh.report.area;
-  if (IsDense(n, pairs)) {
-    const MatrixPairs raw = SolveDense(problem, pairs);
-    result.eigenvalues = raw.values;
-    result.eigenvectors = problem.inverse_sqrt_mass.asDiagonal() * raw.vectors;
-  } else {
-    MARROW_RETURN_IF_ERROR(SliceCertified(
-        problem, mesh.mesh.positions.data(), pairs, tolerance, cancel,
-        [&](double share) {
-          if (progress) progress(0.95 * share);
-        },
-        result));
-  }
-  Finish(0, result.eigenvalues, result.eigenvectors);
-  MARROW_ASSIGN_OR_RETURN(result.residuals, Residuals(problem, cancel, result));
-  if (const double worst = result.residuals.maxCoeff(); !(worst <= tolerance))
-    return WithReason(
-        absl::InternalError(absl::StrCat("an eigen-pair has the residual ",
-                                         worst, ", more than ", tolerance)),
-        kReasonSolverNotConverged);
-  if (progress) progress(1);
-  return result;
 }
 
 double PredictSolverSeconds(uint64_t vertices, uint32_t count) {

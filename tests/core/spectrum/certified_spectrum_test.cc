@@ -72,7 +72,7 @@ void ExpectStrict(const TriangleMesh& mesh, const CertifiedSpectrum& spectrum) {
                 .cwiseAbs()
                 .maxCoeff(),
             1e-10);
-  EXPECT_LE(WorstOrthonormality(laplacian, spectrum), 1e-8);
+  EXPECT_LE(WorstOrthonormality(laplacian, spectrum), 1e-10);
   EXPECT_TRUE((spectrum.eigenvectors.col(0).array() == 1).all());
   for (uint32_t k = 0; k < spectrum.NumPairs(); ++k) {
     Eigen::Index at;

@@ -210,53 +210,6 @@ TEST(SolverTest, FewPairsAreFoundWithoutTheRest) {
   EXPECT_LT(pairs->NumPairs(), 20u);
 }
 
-void ExpectCertified(const CanonicalMesh& mesh, const CertifiedPairs& pairs) {
-  const Laplacian laplacian = *BuildLaplacian(mesh.mesh);
-  const auto& phi = pairs.eigenvectors;
-  const Eigen::MatrixXd products =
-      phi.transpose() * laplacian.M.asDiagonal() * phi;
-  const Eigen::Index count = pairs.eigenvalues.size();
-  EXPECT_LE((products - Eigen::MatrixXd::Identity(count, count))
-                .cwiseAbs()
-                .maxCoeff(),
-            1e-10);
-  for (Eigen::Index k = 1; k < count; ++k) {
-    const double lambda = pairs.eigenvalues[k];
-    const Eigen::VectorXd rest = laplacian.L * phi.col(k) -
-                                 lambda * laplacian.M.cwiseProduct(phi.col(k));
-    const double residual =
-        std::sqrt(rest.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) / lambda;
-    EXPECT_LE(residual, kStrictTolerance) << k;
-    EXPECT_NEAR(residual, pairs.residuals[k], 1e-10) << k;
-  }
-  for (const InertiaCount& count : pairs.counts) {
-    if (count.shift > pairs.eigenvalues.tail(1)[0]) continue;
-    EXPECT_EQ((pairs.eigenvalues.array() < count.shift).count(), count.below);
-  }
-}
-
-TEST(SolverTest, StrictPairsComeWithTheirEvidence) {
-  const CancelToken cancel;
-  for (const NamedMesh& shape :
-       {NamedMesh{"sphere", Icosphere(3)}, NamedMesh{"cross", LimbCross(4)},
-        NamedMesh{"small", Icosphere(1)}}) {
-    SCOPED_TRACE(shape.name);
-    const CanonicalMesh mesh = CanonicalOf(shape.mesh);
-    const auto pairs =
-        *SolveCertified(mesh, 120, kStrictTolerance, cancel, nullptr);
-    ExpectCertified(mesh, pairs);
-    const bool dense = mesh.mesh.NumVertices() <= 500;
-    EXPECT_EQ(pairs.counts.empty(), dense);
-    if (!dense) {
-      EXPECT_GE(pairs.counts.back().below, 121);
-    }
-    EXPECT_EQ(pairs.area, mesh.report.area);
-    const Eigen::VectorXd exact = DenseReference(mesh);
-    for (Eigen::Index k = 1; k < pairs.eigenvalues.size(); ++k)
-      EXPECT_NEAR(pairs.eigenvalues[k] / exact[k], 1, 1e-9) << k;
-  }
-}
-
 TEST(SolverTest, ProgressRisesToOne) {
   for (const auto& mesh : {Icosphere(1), Icosphere(3)}) {
     std::vector<double> reports;
