@@ -1,6 +1,7 @@
 #include "core/boundaries/flood.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace marrow {
 
@@ -45,6 +46,18 @@ double Flood::DistanceOf(uint32_t face) const {
   double sum = 0;
   for (uint32_t v : mesh_.faces[face]) sum += distance_[v];
   return sum / 3;
+}
+
+double Flood::ShareWithin(uint32_t face, double distance) const {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (uint32_t v : mesh_.faces[face]) {
+    nearest = std::min(nearest, distance_[v]);
+    farthest = std::max(farthest, distance_[v]);
+  }
+  if (!(nearest < farthest)) return nearest < distance;
+  const double from_middle =
+      (distance - DistanceOf(face)) / (farthest - nearest);
+  return std::clamp(0.5 + from_middle, 0.0, 1.0);
 }
 
 void Flood::Reach(uint32_t vertex, double distance, double limit) {
