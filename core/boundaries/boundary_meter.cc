@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
 #include "core/boundaries/calibration.h"
 #include "core/boundaries/loops.h"
@@ -11,16 +10,20 @@
 namespace marrow {
 namespace {
 
-constexpr double kCurvatureLimit = 5;
+// Of K r^2: what is half a saddle, and how soon more of it is a whole one.
 constexpr double kSaddle = -0.1;
+constexpr double kSaddleSpread = 0.15;
 // In units of r.
 constexpr double kStripBreadth = 2;
 constexpr double kNearWidth = 0.25;
+constexpr double kMiddleWidth = 0.5;
 constexpr double kWideWidth = 1;
 // Stand for the length, the share or the growth of what has none.
 constexpr double kLeastLength = 1e-12;
 constexpr double kLeastShare = 1e-12;
 constexpr double kLeastGrowth = 0.05;
+
+double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
 }  // namespace
 
@@ -28,7 +31,7 @@ double Strength(const Measures& measures) {
   double sum = 0;
   for (uint32_t i = 0; i < kNumMeasures; ++i)
     sum += kStrengthWeights[i] * measures[i];
-  return 1 / (1 + std::exp(-sum));
+  return Logistic(sum);
 }
 
 BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
@@ -66,9 +69,9 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   measures[kLength] = log_length;
   measures[kRelativeLength] = log_length - 0.5 * std::log(smaller);
   measures[kLargerArea] = std::log(larger);
-  std::tie(measures[kCurvatureNear], measures[kSaddleNear]) =
-      CurvatureAlong(cut, kNearWidth * cut.radius);
-  measures[kSaddleWide] = CurvatureAlong(cut, kWideWidth * cut.radius).second;
+  measures[kSaddleNear] = SaddleAlong(cut, kNearWidth * cut.radius);
+  measures[kSaddleMiddle] = SaddleAlong(cut, kMiddleWidth * cut.radius);
+  measures[kSaddleWide] = SaddleAlong(cut, kWideWidth * cut.radius);
   MeasureStrips(cut, measures);
   measures[kLargestLoop] = LargestLoopShare(adjacency_, unit_, cut.edges);
   return measures;
@@ -78,18 +81,15 @@ double BoundaryMeter::EdgeLength(uint32_t a, uint32_t b) const {
   return (unit_.row(a) - unit_.row(b)).norm();
 }
 
-std::pair<double, double> BoundaryMeter::CurvatureAlong(const Cut& cut,
-                                                        double width) const {
-  double mean = 0, saddle = 0;
+double BoundaryMeter::SaddleAlong(const Cut& cut, double width) const {
+  double saddle = 0;
   for (uint32_t e : cut.edges) {
     const auto [a, b] = adjacency_.EdgeVertices(e);
     const double K = 0.5 * (curvature_.At(a, width) + curvature_.At(b, width));
     const double scaled = K * cut.radius * cut.radius;
-    const double share = EdgeLength(a, b) / cut.length;
-    mean += share * std::clamp(scaled, -kCurvatureLimit, kCurvatureLimit);
-    if (scaled < kSaddle) saddle += share;
+    saddle += EdgeLength(a, b) * Logistic((kSaddle - scaled) / kSaddleSpread);
   }
-  return {mean, saddle};
+  return saddle / cut.length;
 }
 
 void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
@@ -100,8 +100,8 @@ void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {
   });
   double areas[2] = {};
   for (uint32_t f : flood_.faces())
-    if (flood_.DistanceOf(f) < breadth)
-      areas[group[f] == cut.groups[1]] += face_areas_[f];
+    areas[group[f] == cut.groups[1]] +=
+        face_areas_[f] * flood_.ShareWithin(f, breadth);
   auto growth = [&](double area) {
     return std::log(std::max(kLeastGrowth, area / (breadth * cut.length)));
   };

@@ -26,9 +26,13 @@ enum Measure : uint32_t {
   kLength,          // log L
   kRelativeLength,  // log (L / sqrt(area of the smaller group))
   kLargerArea,      // log (area of the larger group)
-  kCurvatureNear,   // mean along the cut of K r^2, within +-5; width r / 4
-  kSaddleNear,      // share of the cut where that is below -0.1
-  kSaddleWide,      // the same share at width r
+  // How much of the cut runs through saddles, 0 to 1: the mean along it of the
+  // logistic function of -(K r^2 + 0.1) / 0.15, K being the Gaussian curvature
+  // at width r / 4. A share of places below a bound would be upset by places
+  // near to that.
+  kSaddleNear,
+  kSaddleMiddle,  // the same at width r / 2
+  kSaddleWide,    // at width r
   // log (area of the strip of breadth 2 r beside the cut, over 2 r L): 0 beside
   // a cut through a cylinder, more where the surface widens. Distances run
   // along edges.
@@ -68,9 +72,10 @@ class BoundaryMeter {
   };
 
   double EdgeLength(uint32_t a, uint32_t b) const;
-  // Mean and share of kCurvature* and kSaddle* at a width.
-  std::pair<double, double> CurvatureAlong(const Cut& cut, double width) const;
+  // kSaddle* at a width.
+  double SaddleAlong(const Cut& cut, double width) const;
   void MeasureStrips(const Cut& cut, Measures& measures);
+
   const TriangleMesh& mesh_;
   const Adjacency& adjacency_;
   const std::vector<double>& face_areas_;

@@ -1,6 +1,7 @@
 #include "core/boundaries/flood.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace marrow {
 
@@ -44,6 +45,18 @@ double Flood::DistanceOf(uint32_t face) const {
   double sum = 0;
   for (uint32_t v : mesh_.faces[face]) sum += marks_[v].distance;
   return sum / 3;
+}
+
+double Flood::ShareWithin(uint32_t face, double distance) const {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (uint32_t v : mesh_.faces[face]) {
+    nearest = std::min(nearest, marks_[v].distance);
+    farthest = std::max(farthest, marks_[v].distance);
+  }
+  if (!(nearest < farthest)) return nearest < distance;
+  const double from_middle =
+      (distance - DistanceOf(face)) / (farthest - nearest);
+  return std::clamp(0.5 + from_middle, 0.0, 1.0);
 }
 
 void Flood::Reach(uint32_t vertex, double distance, double limit) {

@@ -31,6 +31,9 @@ class Flood {
   const std::vector<uint32_t>& faces() const { return faces_; }
   // Mean distance of a reached face's corners.
   double DistanceOf(uint32_t face) const;
+  // How much of a reached face is nearer than `distance`, 0 to 1: about, and
+  // steadily, so that large faces do not make a difference.
+  double ShareWithin(uint32_t face, double distance) const;
   // The greatest distance of a vertex, at most the limit.
   double farthest() const { return farthest_; }
 

@@ -10,9 +10,11 @@
 #include "core/boundaries/boundary_mover.h"
 #include "core/boundaries/calibration.h"
 #include "core/boundaries/curvature.h"
+#include "core/boundaries/noise.h"
 #include "core/boundaries/piece_graph.h"
 #include "core/hierarchy/level_tree.h"
 #include "core/hierarchy/tree_builder.h"
+#include "core/operators/laplacian.h"
 
 namespace marrow {
 namespace {
@@ -68,18 +70,18 @@ absl::StatusOr<MergeTree> BuildMergeTree(
   MARROW_ASSIGN_OR_RETURN(Pieces pieces, FindPieces(context, split, mesh_area,
                                                     cancel, pull, progress));
   result.piece_of_face = std::move(pieces.of_face);
-  MARROW_ASSIGN_OR_RETURN(
-      const Curvature curvature,
-      Curvature::Measure(context.mesh, context.adjacency, cancel));
-  MARROW_RETURN_IF_ERROR(
-      MoveBoundaries(context.mesh, context.adjacency, context.face_areas,
-                     context.links, curvature, cancel, result.piece_of_face));
-  BoundaryMeter meter(context.mesh, context.adjacency, context.face_areas,
-                      curvature);
+  const TriangleMesh calm = WithoutNoise(context.mesh, context.adjacency);
+  const std::vector<double> areas = FaceAreaShares(calm);
+  MARROW_ASSIGN_OR_RETURN(const Curvature curvature,
+                          Curvature::Measure(calm, context.adjacency, cancel));
+  MARROW_RETURN_IF_ERROR(MoveBoundaries(calm, context.adjacency, areas,
+                                        context.links, curvature, cancel,
+                                        result.piece_of_face));
+  BoundaryMeter meter(calm, context.adjacency, areas, curvature);
   MARROW_ASSIGN_OR_RETURN(
       result.order,
-      MergePieces(PieceGraph(context.adjacency, result.piece_of_face,
-                             context.face_areas, context.links),
+      MergePieces(PieceGraph(context.adjacency, result.piece_of_face, areas,
+                             context.links),
                   meter, cancel));
   const size_t count = std::min<size_t>(levels, std::size(kLevelSalience));
   MARROW_ASSIGN_OR_RETURN(

@@ -45,6 +45,22 @@ TEST(FloodTest, FindsAllFacesNearTheEdgesAndNoOther) {
   }
 }
 
+TEST(FloodTest, SharesOutTheFacesThatALimitRunsThrough) {
+  const TriangleMesh mesh = Grid(10, 3);
+  const Adjacency adjacency(mesh);
+  Flood flood(mesh, adjacency, mesh.positions);
+  flood.Run(LeftEdge(mesh, adjacency), 5, [](uint32_t) { return true; });
+  double last = 0;
+  for (double distance : {0.0, 1.0, 2.25, 2.5, 2.75, 3.0, 5.0}) {
+    double area = 0;
+    for (uint32_t f : flood.faces())
+      area += 0.5 * flood.ShareWithin(f, distance);
+    EXPECT_NEAR(area, 3 * distance, 0.6);
+    EXPECT_GE(area, last);
+    last = area;
+  }
+}
+
 TEST(FloodTest, StaysWithin) {
   const TriangleMesh mesh = Grid(10, 3);
   const Adjacency adjacency(mesh);

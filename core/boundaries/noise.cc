@@ -1,0 +1,84 @@
+#include "core/boundaries/noise.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <vector>
+
+#include "core/boundaries/curvature.h"
+
+namespace marrow {
+namespace {
+
+// Between the least agreement of shapes, .28 where fans were divided, and the
+// greatest of noise, .16 on 800 vertices.
+constexpr double kNoisyAgreement = 0.22;
+
+// Forward to the mean of the neighbours, and a little more back, so that waves
+// much longer than an edge neither shrink nor grow.
+constexpr double kForward = 0.5;
+constexpr double kBack = 0.53;
+constexpr int kCalmSteps = 20;
+// What is kept has at least this share of the area that it had.
+constexpr double kLeastArea = 0.01;
+
+// For each vertex the mean of `values`, a row a vertex, over its neighbours.
+template <typename Values>
+Values NeighbourMeans(const Adjacency& adjacency, const Values& values) {
+  Values sums = Values::Zero(values.rows(), values.cols());
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(values.rows());
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    const auto [a, b] = adjacency.EdgeVertices(e);
+    sums.row(a) += values.row(b);
+    sums.row(b) += values.row(a);
+    ++count[a];
+    ++count[b];
+  }
+  return sums.array().colwise() / count.array().max(1);
+}
+
+Positions VertexNormals(const TriangleMesh& mesh, const Positions& unit) {
+  Positions normals = Positions::Zero(unit.rows(), 3);
+  for (const Triangle& face : mesh.faces) {
+    const Eigen::Vector3d u =
+        (unit.row(face[1]) - unit.row(face[0])).transpose();
+    const Eigen::Vector3d v =
+        (unit.row(face[2]) - unit.row(face[0])).transpose();
+    const Eigen::RowVector3d normal = u.cross(v).transpose();
+    for (uint32_t corner : face) normals.row(corner) += normal;
+  }
+  return normals.rowwise().normalized();
+}
+
+double AreaOf(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Eigen::Vector3d u = mesh.Position(b) - mesh.Position(a);
+    area += 0.5 * u.cross(mesh.Position(c) - mesh.Position(a)).norm();
+  }
+  return area;
+}
+
+}  // namespace
+
+double BumpAgreement(const TriangleMesh& mesh, const Adjacency& adjacency) {
+  const Positions unit = UnitAreaPositions(mesh);
+  const Positions bumps = NeighbourMeans(adjacency, unit) - unit;
+  const Eigen::VectorXd heights =
+      bumps.cwiseProduct(VertexNormals(mesh, unit)).rowwise().sum();
+  const double square = heights.squaredNorm();
+  return square > 0 ? heights.dot(NeighbourMeans(adjacency, heights)) / square
+                    : 1;
+}
+
+TriangleMesh WithoutNoise(const TriangleMesh& mesh,
+                          const Adjacency& adjacency) {
+  if (BumpAgreement(mesh, adjacency) >= kNoisyAgreement) return mesh;
+  TriangleMesh calm = mesh;
+  for (int step = 0; step < kCalmSteps; ++step)
+    for (double weight : {kForward, -kBack})
+      calm.positions +=
+          weight * (NeighbourMeans(adjacency, calm.positions) - calm.positions);
+  return AreaOf(calm) > kLeastArea * AreaOf(mesh) ? calm : mesh;
+}
+
+}  // namespace marrow
