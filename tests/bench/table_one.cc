@@ -48,7 +48,8 @@ absl::Status Measure(const Row& row) {
   start = std::chrono::steady_clock::now();
   const Adjacency adjacency(canonical->mesh);
   const auto areas = FaceAreaShares(canonical->mesh);
-  TreeBuilder builder({canonical->mesh, adjacency, **pairs, areas},
+  const PulledPairs pulled{*pairs, (*pairs)->NumPairs() - 1};
+  TreeBuilder builder({canonical->mesh, adjacency, pulled, areas},
                       SplitOptions(), canonical->report.area);
   const auto deeper = builder.Deepen(cancel, nullptr);
   if (!deeper.ok()) return deeper.status();
