@@ -25,7 +25,16 @@
 namespace marrow::testing {
 namespace {
 
-class SegmentTest : public ServiceTest {};
+class SegmentTest : public ServiceTest {
+ protected:
+  // The star by the paper's method, which splits it twice; merging finds
+  // nothing more at its second threshold.
+  v1::SegmentRequest TwoLevels() {
+    v1::SegmentRequest request = Request(StarPayload(3));
+    request.mutable_options()->set_method(v1::METHOD_PAPER);
+    return request;
+  }
+};
 
 // "accepted mesh_report level labels ..." without progress.
 std::string Order(const Answer& answer) {
@@ -39,14 +48,6 @@ std::string Order(const Answer& answer) {
     }
   }
   return order;
-}
-
-// The star by the paper's method, which splits it twice; merging finds nothing
-// more at its second threshold.
-v1::SegmentRequest TwoLevels() {
-  v1::SegmentRequest request = Request(StarPayload(3));
-  request.mutable_options()->set_method(v1::METHOD_PAPER);
-  return request;
 }
 
 TEST_F(SegmentTest, EventsComeInTheOrderOfTheContract) {
