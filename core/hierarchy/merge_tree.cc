@@ -1,6 +1,7 @@
 #include "core/hierarchy/merge_tree.h"
 
 #include <algorithm>
+#include <future>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -65,12 +66,15 @@ absl::StatusOr<MergeTree> BuildMergeTree(
   SplitOptions split = options;
   split.kappa = kPieceKappa;
   MergeTree result;
+  // It takes nothing but the mesh, and one thread; so does the first split.
+  std::future<absl::StatusOr<Curvature>> measured =
+      std::async(std::launch::async, [&] {
+        return Curvature::Measure(context.mesh, context.adjacency, cancel);
+      });
   MARROW_ASSIGN_OR_RETURN(Pieces pieces, FindPieces(context, split, mesh_area,
                                                     cancel, pull, progress));
   result.piece_of_face = std::move(pieces.of_face);
-  MARROW_ASSIGN_OR_RETURN(
-      const Curvature curvature,
-      Curvature::Measure(context.mesh, context.adjacency, cancel));
+  MARROW_ASSIGN_OR_RETURN(const Curvature curvature, measured.get());
   MARROW_RETURN_IF_ERROR(
       MoveBoundaries(context.mesh, context.adjacency, context.face_areas,
                      context.links, curvature, cancel, result.piece_of_face));
