@@ -72,9 +72,11 @@ std::vector<absl::StatusOr<RegionSplit>> TreeBuilder::SplitAll(
     if (progress) progress(std::min(1.0, tried.load()));
   };
   Team team(std::min(UsualThreads(), static_cast<int>(leaves.size())));
+  const int threads_each = UsualThreads() / team.threads();
   team.For(static_cast<int>(leaves.size()), [&](int i) {
     const SegmentNode& leaf = tree_.nodes[leaves[i]];
-    splits[i] = SplitRegion(context_, leaf.faces, options_, cancel);
+    splits[i] =
+        SplitRegion(context_, leaf.faces, options_, cancel, threads_each);
     tried += leaf.area / mesh_area_;
     if (std::this_thread::get_id() == caller) report();
   });
