@@ -2,166 +2,196 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <span>
 #include <utility>
 
+#include "absl/container/inlined_vector.h"
 #include "core/base/status_macros.h"
 #include "core/boundaries/calibration.h"
 #include "core/boundaries/flood.h"
 #include "core/boundaries/min_cut.h"
+#include "core/boundaries/pair_order.h"
 #include "core/pieces/stray_pieces.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 namespace {
 
-using Pair = std::pair<uint32_t, uint32_t>;  // the lesser piece first
-
-class Mover {
+// Whose face is whose. Pairs of pieces that are moved at once see each other's
+// faces pass from piece to piece, but never to or from their own two, which is
+// all they ask.
+class Pieces {
  public:
-  Mover(const TriangleMesh& mesh, const Adjacency& adjacency,
-        const FaceLinks& links, const Curvature& curvature,
-        std::vector<uint32_t>& piece_of_face)
-      : adjacency_(adjacency),
-        links_(links),
-        curvature_(curvature),
-        unit_(UnitAreaPositions(mesh)),
-        flood_(mesh, adjacency, unit_),
-        piece_(piece_of_face),
-        node_(mesh.NumFaces(), kNoIndex) {}
+  Pieces(uint32_t count, std::vector<uint32_t>& of_face)
+      : of_face_(of_face), faces_(count) {
+    for (uint32_t f = 0; f < of_face.size(); ++f)
+      faces_[of_face[f]].push_back(f);
+  }
 
-  absl::Status MoveAll(uint32_t num_pieces, const CancelToken& cancel) {
-    faces_.assign(num_pieces, {});
-    for (uint32_t f = 0; f < piece_.size(); ++f) faces_[piece_[f]].push_back(f);
-    for (const Pair& pair : Neighbours()) {
-      MARROW_RETURN_IF_ERROR(cancel.Check());
-      Move(pair);
-    }
-    return absl::OkStatus();
+  uint32_t Of(uint32_t face) const {
+    return std::atomic_ref(of_face_[face]).load(std::memory_order_relaxed);
+  }
+  void Put(uint32_t face, uint32_t piece) {
+    std::atomic_ref(of_face_[face]).store(piece, std::memory_order_relaxed);
+  }
+
+  const std::vector<uint32_t>& Faces(uint32_t piece) const {
+    return faces_[piece];
+  }
+  // Brings the lists of the two up to date.
+  void ShareOut(const PiecePair& pair) {
+    const auto [a, b] = pair;
+    std::vector<uint32_t> both = std::move(faces_[a]);
+    both.insert(both.end(), faces_[b].begin(), faces_[b].end());
+    faces_[a].clear();
+    faces_[b].clear();
+    for (uint32_t f : both) faces_[Of(f)].push_back(f);
   }
 
  private:
-  std::set<Pair> Neighbours() const {
-    std::set<Pair> pairs;
-    for (uint32_t e = 0; e < adjacency_.NumEdges(); ++e)
-      for (uint32_t f : adjacency_.EdgeFaces(e))
-        for (uint32_t g : FewNeighbours(e, f))
-          if (piece_[f] < piece_[g]) pairs.insert({piece_[f], piece_[g]});
-    return pairs;
-  }
+  std::vector<uint32_t>& of_face_;
+  std::vector<std::vector<uint32_t>> faces_;  // of each piece
+};
 
-  // Those of f across edge e: where many faces meet, the next and the last one
-  // stand for all, or the work would grow with the square of their number.
-  std::vector<uint32_t> FewNeighbours(uint32_t e, uint32_t f) const {
-    const std::span<const uint32_t> around = adjacency_.EdgeFaces(e);
-    if (around.size() < 2) return {};
-    const size_t i =
-        std::lower_bound(around.begin(), around.end(), f) - around.begin();
-    const uint32_t next = around[(i + 1) % around.size()];
-    const uint32_t last = around[(i + around.size() - 1) % around.size()];
-    return next == last ? std::vector<uint32_t>{next}
-                        : std::vector<uint32_t>{next, last};
-  }
+// What boundaries are moved on.
+struct Surface {
+  const TriangleMesh& mesh;
+  const Adjacency& adjacency;
+  const FaceLinks& links;
+  const Curvature& curvature;
+  const Positions unit = UnitAreaPositions(mesh);
 
-  void Move(const Pair& pair) {
-    const auto [a, b] = pair;
-    const std::vector<uint32_t> boundary = BoundaryOf(pair);
+  double Length(uint32_t e) const {
+    const auto [u, v] = adjacency.EdgeVertices(e);
+    return (unit.row(u) - unit.row(v)).norm();
+  }
+};
+
+// Those of f across edge e: where many faces meet, the next and the last one
+// stand for all, or the work would grow with the square of their number.
+absl::InlinedVector<uint32_t, 2> FewNeighbours(const Adjacency& adjacency,
+                                               uint32_t e, uint32_t f) {
+  const std::span<const uint32_t> around = adjacency.EdgeFaces(e);
+  if (around.size() < 2) return {};
+  const size_t i =
+      std::lower_bound(around.begin(), around.end(), f) - around.begin();
+  const uint32_t next = around[(i + 1) % around.size()];
+  const uint32_t last = around[(i + around.size() - 1) % around.size()];
+  if (next == last) return {next};
+  return {next, last};
+}
+
+// Ascending.
+std::vector<PiecePair> Neighbours(const Adjacency& adjacency,
+                                  const std::vector<uint32_t>& piece_of_face) {
+  std::set<PiecePair> pairs;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
+    for (uint32_t f : adjacency.EdgeFaces(e))
+      for (uint32_t g : FewNeighbours(adjacency, e, f))
+        if (piece_of_face[f] < piece_of_face[g])
+          pairs.insert({piece_of_face[f], piece_of_face[g]});
+  return {pairs.begin(), pairs.end()};
+}
+
+// Moves one boundary at a time; several movers may share the pieces.
+class Mover {
+ public:
+  explicit Mover(const Surface& surface)
+      : surface_(surface),
+        flood_(surface.mesh, surface.adjacency, surface.unit),
+        node_(surface.mesh.NumFaces(), kNoIndex) {}
+
+  void Move(const PiecePair& pair, Pieces& pieces) {
+    const std::vector<uint32_t> boundary = BoundaryOf(pair, pieces);
     double length = 0;
-    for (uint32_t e : boundary) length += Length(e);
+    for (uint32_t e : boundary) length += surface_.Length(e);
     radius_ = length / (2 * std::numbers::pi);
     if (!(radius_ > 0)) return;
     band_.clear();
-    if (!AddBand(boundary, a) || !AddBand(boundary, b)) return;
+    if (!AddBand(boundary, pair.first, pieces) ||
+        !AddBand(boundary, pair.second, pieces))
+      return;
     for (uint32_t i = 0; i < band_.size(); ++i) node_[band_[i]] = i;
-    Cut(pair);
+    Cut(pair, pieces);
     for (uint32_t f : band_) node_[f] = kNoIndex;
   }
 
-  std::vector<uint32_t> BoundaryOf(const Pair& pair) const {
+ private:
+  std::vector<uint32_t> BoundaryOf(const PiecePair& pair,
+                                   const Pieces& pieces) const {
     const auto [a, b] = pair;
-    const bool few = faces_[a].size() < faces_[b].size();
+    const bool few = pieces.Faces(a).size() < pieces.Faces(b).size();
     const uint32_t own = few ? a : b, other = few ? b : a;
     std::vector<uint32_t> edges;
-    for (uint32_t f : faces_[own])
-      for (uint32_t e : adjacency_.FaceEdges(f))
-        for (uint32_t g : FewNeighbours(e, f))
-          if (piece_[g] == other) edges.push_back(e);
+    for (uint32_t f : pieces.Faces(own))
+      for (uint32_t e : surface_.adjacency.FaceEdges(f))
+        for (uint32_t g : FewNeighbours(surface_.adjacency, e, f))
+          if (pieces.Of(g) == other) edges.push_back(e);
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
   }
 
   // Whether something of the piece is left outside of the band.
-  bool AddBand(const std::vector<uint32_t>& boundary, uint32_t piece) {
+  bool AddBand(const std::vector<uint32_t>& boundary, uint32_t piece,
+               const Pieces& pieces) {
     const double limit = kBandWidth * radius_;
     flood_.Run(boundary, limit / kBandShare,
-               [&](uint32_t f) { return piece_[f] == piece; });
+               [&](uint32_t f) { return pieces.Of(f) == piece; });
     const double breadth = std::min(limit, kBandShare * flood_.farthest());
     const size_t before = band_.size();
     for (uint32_t f : flood_.faces())
       if (flood_.DistanceOf(f) < breadth) band_.push_back(f);
-    return band_.size() - before < faces_[piece].size();
+    return band_.size() - before < pieces.Faces(piece).size();
   }
 
-  void Cut(const Pair& pair) {
+  void Cut(const PiecePair& pair, Pieces& pieces) const {
+    const Adjacency& adjacency = surface_.adjacency;
     MinCut graph(static_cast<uint32_t>(band_.size()));
+    const auto connect = [&](uint32_t f, uint32_t g, uint32_t e) {
+      Connect(pair, pieces, f, g, e, graph);
+    };
     for (uint32_t f : band_) {
-      for (uint32_t e : adjacency_.FaceEdges(f))
-        for (uint32_t g : FewNeighbours(e, f)) Connect(pair, f, g, e, graph);
-      for (uint32_t g : links_.Of(f))
-        Connect(pair, f, g, adjacency_.FaceEdges(std::min(f, g))[0], graph);
+      for (uint32_t e : adjacency.FaceEdges(f))
+        for (uint32_t g : FewNeighbours(adjacency, e, f)) connect(f, g, e);
+      for (uint32_t g : surface_.links.Of(f))
+        connect(f, g, adjacency.FaceEdges(std::min(f, g))[0]);
     }
     const std::vector<MinCut::Side> sides = graph.Solve();
     for (uint32_t i = 0; i < band_.size(); ++i)
       if (sides[i] != MinCut::Side::kNeither)
-        piece_[band_[i]] =
-            sides[i] == MinCut::Side::kSource ? pair.first : pair.second;
-    ShareOut(pair);
+        pieces.Put(band_[i], sides[i] == MinCut::Side::kSource ? pair.first
+                                                               : pair.second);
+    pieces.ShareOut(pair);
   }
 
   // An edge within the band is connected from its lesser face alone.
-  void Connect(const Pair& pair, uint32_t f, uint32_t g, uint32_t e,
-               MinCut& graph) const {
+  void Connect(const PiecePair& pair, const Pieces& pieces, uint32_t f,
+               uint32_t g, uint32_t e, MinCut& graph) const {
     if (node_[g] != kNoIndex) {
       if (f < g) graph.Connect(node_[f], node_[g], Cost(e));
-    } else if (piece_[g] == pair.first) {
+    } else if (pieces.Of(g) == pair.first) {
       graph.ConnectToSource(node_[f], Cost(e));
-    } else if (piece_[g] == pair.second) {
+    } else if (pieces.Of(g) == pair.second) {
       graph.ConnectToSink(node_[f], Cost(e));
     }
   }
 
-  // Brings the two lists of faces up to date.
-  void ShareOut(const Pair& pair) {
-    std::vector<uint32_t> both = std::move(faces_[pair.first]);
-    both.insert(both.end(), faces_[pair.second].begin(),
-                faces_[pair.second].end());
-    faces_[pair.first].clear();
-    faces_[pair.second].clear();
-    for (uint32_t f : both) faces_[piece_[f]].push_back(f);
-  }
-
-  double Length(uint32_t e) const {
-    const auto [u, v] = adjacency_.EdgeVertices(e);
-    return (unit_.row(u) - unit_.row(v)).norm();
-  }
   double Cost(uint32_t e) const {
-    const auto [u, v] = adjacency_.EdgeVertices(e);
+    const auto [u, v] = surface_.adjacency.EdgeVertices(e);
+    const Curvature& curvature = surface_.curvature;
     const double width = kCreaseWidth * radius_;
-    const double K = (curvature_.At(u, width) + curvature_.At(v, width)) / 2;
+    const double K = (curvature.At(u, width) + curvature.At(v, width)) / 2;
     const double bend = std::tanh(K * radius_ * radius_ / kCreaseCurvature);
-    return Length(e) * (1 + kCreaseDiscount * bend);
+    return surface_.Length(e) * (1 + kCreaseDiscount * bend);
   }
 
-  const Adjacency& adjacency_;
-  const FaceLinks& links_;
-  const Curvature& curvature_;
-  const Positions unit_;
+  const Surface& surface_;
   Flood flood_;
-  std::vector<uint32_t>& piece_;
-  std::vector<std::vector<uint32_t>> faces_;  // of each piece
   // Of the pair at hand.
   double radius_ = 0;
   std::vector<uint32_t> band_;
@@ -189,9 +219,17 @@ absl::Status MoveBoundaries(const TriangleMesh& mesh,
   const uint32_t num_pieces =
       *std::max_element(piece_of_face.begin(), piece_of_face.end()) + 1;
   const auto pairs = LinkPairs(links, mesh.NumFaces());
-  Mover mover(mesh, adjacency, links, curvature, piece_of_face);
+  const Surface surface{mesh, adjacency, links, curvature};
+  Team team(UsualThreads());
+  std::vector<Mover> movers;
+  for (int i = 0; i < team.threads(); ++i) movers.emplace_back(surface);
   for (int pass = 0; pass < kMovePasses; ++pass) {
-    MARROW_RETURN_IF_ERROR(mover.MoveAll(num_pieces, cancel));
+    Pieces pieces(num_pieces, piece_of_face);
+    ForPairs(team, Neighbours(adjacency, piece_of_face),
+             [&](int worker, const PiecePair& pair) {
+               if (!cancel.IsCancelled()) movers[worker].Move(pair, pieces);
+             });
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     JoinStrayPieces(adjacency, face_areas, pairs, num_pieces, piece_of_face);
   }
   return absl::OkStatus();

@@ -1,6 +1,7 @@
 #include "core/hierarchy/merge_tree.h"
 
 #include <algorithm>
+#include <future>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -58,6 +59,22 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
   return Pieces{std::move(piece), builder.tree().nodes[0].stop_reason};
 }
 
+// What boundaries are measured on.
+struct Surface {
+  TriangleMesh mesh;  // without noise
+  std::vector<double> areas;
+  Curvature curvature;
+};
+
+absl::StatusOr<Surface> MeasureSurface(const SplitContext& context,
+                                       const CancelToken& cancel) {
+  TriangleMesh mesh = WithoutNoise(context.mesh, context.adjacency);
+  std::vector<double> areas = FaceAreaShares(mesh);
+  MARROW_ASSIGN_OR_RETURN(Curvature curvature,
+                          Curvature::Measure(mesh, context.adjacency, cancel));
+  return Surface{std::move(mesh), std::move(areas), std::move(curvature)};
+}
+
 }  // namespace
 
 absl::StatusOr<MergeTree> BuildMergeTree(
@@ -67,21 +84,22 @@ absl::StatusOr<MergeTree> BuildMergeTree(
   SplitOptions split = options;
   split.kappa = kPieceKappa;
   MergeTree result;
+  // It takes nothing but the mesh, and one thread; so does the first split.
+  std::future<absl::StatusOr<Surface>> measured = std::async(
+      std::launch::async, [&] { return MeasureSurface(context, cancel); });
   MARROW_ASSIGN_OR_RETURN(Pieces pieces, FindPieces(context, split, mesh_area,
                                                     cancel, pull, progress));
   result.piece_of_face = std::move(pieces.of_face);
-  const TriangleMesh calm = WithoutNoise(context.mesh, context.adjacency);
-  const std::vector<double> areas = FaceAreaShares(calm);
-  MARROW_ASSIGN_OR_RETURN(const Curvature curvature,
-                          Curvature::Measure(calm, context.adjacency, cancel));
-  MARROW_RETURN_IF_ERROR(MoveBoundaries(calm, context.adjacency, areas,
-                                        context.links, curvature, cancel,
-                                        result.piece_of_face));
-  BoundaryMeter meter(calm, context.adjacency, areas, curvature);
+  MARROW_ASSIGN_OR_RETURN(const Surface surface, measured.get());
+  MARROW_RETURN_IF_ERROR(MoveBoundaries(
+      surface.mesh, context.adjacency, surface.areas, context.links,
+      surface.curvature, cancel, result.piece_of_face));
+  BoundaryMeter meter(surface.mesh, context.adjacency, surface.areas,
+                      surface.curvature);
   MARROW_ASSIGN_OR_RETURN(
       result.order,
-      MergePieces(PieceGraph(context.adjacency, result.piece_of_face, areas,
-                             context.links),
+      MergePieces(PieceGraph(context.adjacency, result.piece_of_face,
+                             surface.areas, context.links),
                   meter, cancel));
   const size_t count = std::min<size_t>(levels, std::size(kLevelSalience));
   MARROW_ASSIGN_OR_RETURN(

@@ -11,17 +11,6 @@
 #include "core/spectrum/team.h"
 
 namespace marrow {
-namespace {
-
-// As many as the eigensolver takes.
-int ThreadsFor(size_t regions) {
-  const unsigned threads =
-      std::clamp(std::thread::hardware_concurrency(), 1u, 2u);
-  return static_cast<int>(std::min<size_t>(threads, regions));
-}
-
-}  // namespace
-
 std::vector<uint32_t> SegmentTree::SegmentsAtLevel(uint32_t level) const {
   std::vector<uint32_t> segments;
   for (const SegmentNode& node : nodes)
@@ -82,10 +71,12 @@ std::vector<absl::StatusOr<RegionSplit>> TreeBuilder::SplitAll(
   const auto report = [&] {
     if (progress) progress(std::min(1.0, tried.load()));
   };
-  Team team(ThreadsFor(leaves.size()));
+  Team team(std::min(UsualThreads(), static_cast<int>(leaves.size())));
+  const int threads_each = UsualThreads() / team.threads();
   team.For(static_cast<int>(leaves.size()), [&](int i) {
     const SegmentNode& leaf = tree_.nodes[leaves[i]];
-    splits[i] = SplitRegion(context_, leaf.faces, options_, cancel);
+    splits[i] =
+        SplitRegion(context_, leaf.faces, options_, cancel, threads_each);
     tried += leaf.area / mesh_area_;
     if (std::this_thread::get_id() == caller) report();
   });

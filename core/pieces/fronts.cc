@@ -144,7 +144,40 @@ class Competition {
   std::vector<uint32_t> owner_;
 };
 
+constexpr uint32_t kRange = 4096;
+
 }  // namespace
+
+void ForRanges(Team& team, uint32_t count, const CancelToken& cancel,
+               const std::function<void(uint32_t, uint32_t)>& body) {
+  const uint32_t ranges = (count + kRange - 1) / kRange;
+  team.For(static_cast<int>(ranges), [&](int i) {
+    if (cancel.IsCancelled()) return;
+    const uint32_t first = i * kRange;
+    body(first, std::min(count, first + kRange));
+  });
+}
+
+std::vector<FrontDistance> DistancesTo(const MapSketch& sketch,
+                                       const std::vector<Structure>& structures,
+                                       const std::vector<uint32_t>& front,
+                                       const CancelToken& cancel, Team& team) {
+  std::vector<StructureDistance> distances;
+  for (const Structure& structure : structures)
+    distances.emplace_back(sketch, structure);
+  std::vector<FrontDistance> result(front.size());
+  const auto count = static_cast<uint32_t>(front.size());
+  ForRanges(team, count, cancel, [&](uint32_t first, uint32_t end) {
+    // Next to each other in number is near each other, mostly.
+    std::vector<uint32_t> point(structures.size(), 0);
+    for (uint32_t v = first; v < end; ++v) {
+      uint32_t& nearest = point[front[v]];
+      const double distance = distances[front[v]].From(nearest, v);
+      result[v] = {front[v], nearest, distance};
+    }
+  });
+  return result;
+}
 
 std::vector<uint32_t> CompeteFronts(const Region& region,
                                     const MapSketch& sketch,

@@ -3,12 +3,14 @@
 #define MARROW_CORE_PIECES_FRONTS_H_
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/pieces/map_sketch.h"
 #include "core/pieces/region.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 
@@ -21,6 +23,18 @@ struct FrontDistance {
   uint32_t point = 0;         // of the structure, about the nearest
   double distance = 0;
 };
+
+// Calls body(first, end) for ranges that make up 0 to count; for some of them
+// only, once `cancel` is.
+void ForRanges(Team& team, uint32_t count, const CancelToken& cancel,
+               const std::function<void(uint32_t, uint32_t)>& body);
+
+// The distance of each vertex to the structure that `front` names for it: what
+// CompeteFronts may be told to know. Of no use once `cancel` is.
+std::vector<FrontDistance> DistancesTo(const MapSketch& sketch,
+                                       const std::vector<Structure>& structures,
+                                       const std::vector<uint32_t>& front,
+                                       const CancelToken& cancel, Team& team);
 
 // Local face -> the structure (front) that claims it: faces leave a heap in the
 // order of (Eq. 11, local face, front), which is total, so the result does not

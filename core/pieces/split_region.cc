@@ -12,6 +12,7 @@
 #include "core/pieces/medial_structure.h"
 #include "core/pieces/region.h"
 #include "core/pieces/stray_pieces.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 namespace {
@@ -25,7 +26,7 @@ struct Initialisation {
 // farthest vertex from those there are, while it is far enough.
 Initialisation InitialStructures(const Region& region, const MapSketch& sketch,
                                  const SplitOptions& options,
-                                 const CancelToken& cancel) {
+                                 const CancelToken& cancel, Team& team) {
   const DiffusionMap& Phi = sketch.Phi();
   const std::vector<uint32_t> all = region.AllFaces();
   Initialisation result;
@@ -38,13 +39,16 @@ Initialisation InitialStructures(const Region& region, const MapSketch& sketch,
   while (!cancel.IsCancelled()) {
     const StructureDistance to_latest(sketch, structures.back());
     const auto front = static_cast<uint32_t>(structures.size() - 1);
-    uint32_t point = 0;
-    for (uint32_t v = 0; v < region.NumVertices(); ++v) {
-      const double here = to_latest.From(point, v, distance[v]);
-      if (!(here < distance[v])) continue;
-      distance[v] = here;
-      nearest[v] = {front, point, here};
-    }
+    ForRanges(team, region.NumVertices(), cancel,
+              [&](uint32_t first, uint32_t end) {
+                uint32_t point = 0;
+                for (uint32_t v = first; v < end; ++v) {
+                  const double here = to_latest.From(point, v, distance[v]);
+                  if (!(here < distance[v])) continue;
+                  distance[v] = here;
+                  nearest[v] = {front, point, here};
+                }
+              });
     if (structures.size() == 1) {
       threshold = options.kappa *
                   MeanDistance(Phi, {region.triangles(), region.areas(), all},
@@ -84,6 +88,20 @@ double ShareChanged(const std::vector<uint32_t>& a,
   return static_cast<double>(changed) / a.size();
 }
 
+// Those of the segments that are not empty.
+std::vector<Structure> StructuresOf(
+    const Region& region, const DiffusionMap& Phi,
+    const std::vector<std::vector<uint32_t>>& segments, double epsilon,
+    Team& team) {
+  std::vector<Structure> structures(segments.size());
+  team.For(static_cast<int>(segments.size()), [&](int i) {
+    if (!segments[i].empty())
+      structures[i] = ComputeMedialStructure(region, Phi, segments[i], epsilon);
+  });
+  std::erase_if(structures, [](const Structure& s) { return s.empty(); });
+  return structures;
+}
+
 struct Relaxation {
   std::vector<uint32_t> labels;  // local face -> segment
   uint32_t iterations = 0;
@@ -92,13 +110,13 @@ struct Relaxation {
 // The main loop of section 3, until the bijection.
 Relaxation Relax(const Region& region, const MapSketch& sketch,
                  Initialisation initial, const SplitOptions& options,
-                 const CancelToken& cancel) {
+                 const CancelToken& cancel, Team& team) {
   Relaxation result;
-  std::vector<Structure> structures = std::move(initial.structures);
+  auto& [structures, known] = initial;
   std::vector<uint32_t> before;
   while (result.iterations < kMaxIterations && !cancel.IsCancelled()) {
     result.labels = CompeteFronts(region, sketch, structures, cancel,
-                                  std::exchange(initial.nearest, {}));
+                                  std::exchange(known, {}));
     if (cancel.IsCancelled()) break;
     ++result.iterations;
     const auto segments = FacesOfLabels(result.labels, structures.size());
@@ -109,13 +127,12 @@ Relaxation Relax(const Region& region, const MapSketch& sketch,
     if (!starved && !before.empty() &&
         ShareChanged(before, now) <= options.tolerance)
       break;
-    structures.clear();
-    for (const auto& faces : segments)
-      if (!faces.empty())
-        structures.push_back(ComputeMedialStructure(region, sketch.Phi(), faces,
-                                                    options.epsilon));
+    structures =
+        StructuresOf(region, sketch.Phi(), segments, options.epsilon, team);
     // Numbers shift when a front is dropped: nothing to compare with.
     before = starved ? std::vector<uint32_t>() : std::move(now);
+    // Most vertices meet the front again that they met before.
+    if (!starved) known = DistancesTo(sketch, structures, before, cancel, team);
   }
   return result;
 }
@@ -146,7 +163,8 @@ RegionSplit Unsplit(StopReason reason) {
 absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
                                         const std::vector<uint32_t>& faces,
                                         const SplitOptions& options,
-                                        const CancelToken& cancel) {
+                                        const CancelToken& cancel,
+                                        int threads) {
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const Region region(context.mesh, context.adjacency, context.face_areas,
                       faces, context.links);
@@ -162,12 +180,14 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
       BuildDiffusionMap(pairs, region.mesh_vertices(), t, *dimension);
   const MapSketch sketch(Phi);
 
-  Initialisation initial = InitialStructures(region, sketch, options, cancel);
+  Team team(threads);
+  Initialisation initial =
+      InitialStructures(region, sketch, options, cancel, team);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const size_t num_labels = initial.structures.size();
   if (num_labels < 2) return Unsplit(StopReason::kOneSegment);
   Relaxation relaxed =
-      Relax(region, sketch, std::move(initial), options, cancel);
+      Relax(region, sketch, std::move(initial), options, cancel, team);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   JoinStrayPieces(region.adjacency(), region.areas(), region.links(),
                   num_labels, relaxed.labels);

@@ -87,12 +87,13 @@ struct RegionSplit {
   StopReason stop_reason = StopReason::kNone;
 };
 
-// Splits the region made of `faces` (ascending, not empty). Deterministic.
-// Errors: CANCELLED.
+// Splits the region made of `faces` (ascending, not empty). Deterministic, the
+// number of threads having no part in it. Errors: CANCELLED.
 absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
                                         const std::vector<uint32_t>& faces,
                                         const SplitOptions& options,
-                                        const CancelToken& cancel);
+                                        const CancelToken& cancel,
+                                        int threads = 1);
 
 // The medial structure of a region at its own time scale (Eq. 8 and 10), as far
 // as the usable pairs go: a part of a region that was split has those that the

@@ -1,8 +1,14 @@
 #include "core/spectrum/team.h"
 
+#include <algorithm>
 #include <new>
 
 namespace marrow {
+
+int UsualThreads() {
+  return static_cast<int>(
+      std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
+}
 
 Team::Team(int threads) {
   for (int i = 1; i < threads; ++i) others_.emplace_back([this] { Work(); });

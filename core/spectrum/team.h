@@ -11,6 +11,9 @@
 
 namespace marrow {
 
+// What one computation takes: two where there are CPUs for it.
+int UsualThreads();
+
 // Runs the iterations of a loop on its threads, the caller's among them. Which
 // thread runs which iteration is left to chance, so an iteration must write
 // where no other does. Not for use by several callers at a time.

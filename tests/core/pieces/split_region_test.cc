@@ -167,6 +167,28 @@ TEST(SplitRegionTest, GivesTheSameTwice) {
   }
 }
 
+// Of enough vertices for several ranges of them.
+TEST(SplitRegionTest, GivesTheSameOnAnyNumberOfThreads) {
+  const SolvedMesh solved = PretendToSolve(Icosphere(5), 20);
+  const auto split = [&](int threads) {
+    return SplitRegion(solved.context(), solved.AllFaces(),
+                       SplitOptions{.kappa = 0.5}, CancelToken(), threads)
+        .value();
+  };
+  const RegionSplit one = split(1);
+  ASSERT_GT(one.pieces.size(), 1u);
+  for (int threads : {2, 3}) {
+    const RegionSplit more = split(threads);
+    ASSERT_EQ(more.pieces.size(), one.pieces.size());
+    EXPECT_EQ(more.iterations, one.iterations);
+    for (size_t p = 0; p < one.pieces.size(); ++p) {
+      EXPECT_EQ(more.pieces[p].faces, one.pieces[p].faces);
+      EXPECT_EQ(more.pieces[p].medial_structure,
+                one.pieces[p].medial_structure);
+    }
+  }
+}
+
 TEST(SplitRegionTest, CancelledBeforehand) {
   CancelToken cancel;
   cancel.Cancel();
