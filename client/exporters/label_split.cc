@@ -9,9 +9,54 @@
 namespace marrow {
 namespace {
 
+// Of a vertex that no mesh has room for.
+constexpr uint64_t kNoKey = ~uint64_t{0};
+
 // Sorts as the pair (label, vertex) does.
 uint64_t Key(uint32_t label, uint32_t vertex) {
   return (uint64_t{label} << 32) | vertex;
+}
+
+struct Keys {
+  std::vector<uint64_t> of_corners;
+  std::vector<uint64_t> distinct;  // ascending
+};
+
+// Most vertices have one label: what was the latest key of its vertex needs no
+// sorting out.
+Keys KeysOf(const PolygonMesh& mesh, std::span<const uint32_t> faces,
+            std::span<const uint32_t> face_labels) {
+  Keys keys;
+  std::vector<uint64_t> latest(mesh.NumVertices(), kNoKey);
+  for (uint32_t f : faces) {
+    for (uint32_t v : mesh.Face(f)) {
+      const uint64_t key = Key(face_labels[f], v);
+      keys.of_corners.push_back(key);
+      if (latest[v] != key) keys.distinct.push_back(key);
+      latest[v] = key;
+    }
+  }
+  std::sort(keys.distinct.begin(), keys.distinct.end());
+  keys.distinct.erase(std::unique(keys.distinct.begin(), keys.distinct.end()),
+                      keys.distinct.end());
+  return keys;
+}
+
+// Corner -> the place of its key. The latest of a vertex needs no searching.
+std::vector<uint32_t> PlacesOf(const Keys& keys, size_t num_vertices) {
+  const std::vector<uint64_t>& distinct = keys.distinct;
+  std::vector<uint32_t> places, latest(num_vertices, 0);
+  places.reserve(keys.of_corners.size());
+  for (uint64_t key : keys.of_corners) {
+    uint32_t& place = latest[static_cast<uint32_t>(key)];
+    if (distinct[place] != key) {
+      place = static_cast<uint32_t>(
+          std::lower_bound(distinct.begin(), distinct.end(), key) -
+          distinct.begin());
+    }
+    places.push_back(place);
+  }
+  return places;
 }
 
 }  // namespace
@@ -24,25 +69,17 @@ absl::StatusOr<LabelSplit> SplitByLabel(const PolygonMesh& mesh,
                      mesh.NumFaces(), " faces; pass one label a face"));
   }
   LabelSplit split;
-  std::vector<uint64_t> corner_keys;
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    if (mesh.Face(f).size() < 3) continue;
-    split.faces.push_back(static_cast<uint32_t>(f));
-    for (uint32_t v : mesh.Face(f)) {
-      corner_keys.push_back(Key(face_labels[f], v));
+    if (mesh.Face(f).size() >= 3) {
+      split.faces.push_back(static_cast<uint32_t>(f));
     }
   }
-  std::vector<uint64_t> keys = corner_keys;
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  for (uint64_t key : keys) {
+  const Keys keys = KeysOf(mesh, split.faces, face_labels);
+  for (uint64_t key : keys.distinct) {
     split.vertices.push_back(
         {static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)});
   }
-  for (uint64_t key : corner_keys) {
-    split.corners.push_back(static_cast<uint32_t>(
-        std::lower_bound(keys.begin(), keys.end(), key) - keys.begin()));
-  }
+  split.corners = PlacesOf(keys, mesh.NumVertices());
   return split;
 }
 

@@ -12,9 +12,11 @@ namespace marrow {
 namespace {
 
 void AppendBytes(uint64_t value, int bytes, std::string& out) {
+  char buffer[8];
   for (int i = 0; i < bytes; ++i) {
-    out.push_back(static_cast<char>(value >> (8 * i)));
+    buffer[i] = static_cast<char>(value >> (8 * i));
   }
+  out.append(buffer, bytes);
 }
 
 void AppendUint32(uint32_t value, std::string& out) {
@@ -23,9 +25,7 @@ void AppendUint32(uint32_t value, std::string& out) {
 
 void AppendColor(uint32_t label, std::string& out) {
   const Rgb color = SegmentColor(label);
-  out.push_back(static_cast<char>(color.red));
-  out.push_back(static_cast<char>(color.green));
-  out.push_back(static_cast<char>(color.blue));
+  AppendBytes(color.red | color.green << 8 | color.blue << 16, 3, out);
 }
 
 std::string Header(const LabelSplit& split, bool floats, bool wide_count) {
