@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -15,6 +14,7 @@
 #include "core/operators/laplacian.h"
 #include "core/spectrum/reference_solver.h"
 #include "core/spectrum/slicing.h"
+#include "core/spectrum/team.h"
 
 namespace marrow {
 namespace {
@@ -109,8 +109,7 @@ void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
 SlicingOptions OptionsFor(double tolerance) {
   SlicingOptions options;
   options.tolerance = tolerance;
-  options.threads =
-      static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 2u));
+  options.threads = UsualThreads();
   return options;
 }
 
