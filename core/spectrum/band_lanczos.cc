@@ -41,9 +41,8 @@ constexpr double kKnownShare = 0.02;
 // A pair's residual is at most this share of the mean distance, or neighbours
 // are not told apart.
 constexpr double kResolvedShare = 0.05;
-// Looking for convergence in a basis of fewer vectors a pair is in vain: at
-// the usual tolerance it takes 3.2 to 4.2.
-constexpr double kFirstLook = 3.2;
+// Looking for convergence in a basis of fewer vectors a pair is in vain.
+constexpr double kFirstLook = 2;
 // Residuals fall by less than so many decades a step, or as fast as they last
 // did; a look costs as much as a step, so steps that cannot be the last go
 // unseen.
@@ -53,6 +52,8 @@ constexpr double kTrustedShare = 0.8;
 // looks, whose cost is cubic: many equal eigenvalues take a basis that large.
 constexpr int kSlow = 3;
 constexpr int kSlowLooks = 4;
+// From here on a look takes so long that more must come of it.
+constexpr int kLargeBasis = 560;
 constexpr double kMostExcess = 6;
 // Blocks written at once, so that the basis is read once for them.
 constexpr int kTogether = 3;
@@ -95,6 +96,8 @@ class BandFinder {
       if (unseen-- > 0 && basis_.dimension() < most) continue;
       if (Converged()) {
         if (extra-- <= 0) return Extract();
+      } else if (Stagnates()) {
+        break;
       }
       unseen = StepsToGo();
     }
@@ -154,6 +157,23 @@ class BandFinder {
     num_below_ =
         Pick(below_, request_.below, request_.any_end_below, distance_);
     return num_above_ >= 0 && num_below_ >= 0;
+  }
+
+  // Whether a basis that is large already has no more converged pairs than at
+  // the look before. So it is where very many eigenvalues are equal: a new
+  // direction in their space is found as slowly as rounding grows.
+  bool Stagnates() {
+    const int before =
+        std::exchange(converged_, NumConverged(above_) + NumConverged(below_));
+    return basis_.dimension() > kLargeBasis && converged_ <= before;
+  }
+
+  int NumConverged(const Side& side) const {
+    int count = 0;
+    while (HasNext(side, count) &&
+           side.residual[count] <= Allowed(side, count, distance_))
+      ++count;
+    return count;
   }
 
   // How many steps from here on are not worth a look.
@@ -428,6 +448,7 @@ class BandFinder {
   double distance_ = 0;  // the mean one of the eigenvalues
   int last_look_ = 0;    // blocks there were
   double last_excess_ = 0;
+  int converged_ = 0;  // pairs, at the last look
   int num_above_ = 0, num_below_ = 0;
 };
 
