@@ -160,8 +160,8 @@ class BandFinder {
   }
 
   // Whether a basis that is large already has no more converged pairs than at
-  // the look before. So it is where very many eigenvalues are equal: a new
-  // direction in their space is found as slowly as rounding grows.
+  // the look before. So it is where very many eigenvalues are equal: a block
+  // has few directions of their space, and later blocks hardly any new ones.
   bool Stagnates() {
     const int before =
         std::exchange(converged_, NumConverged(above_) + NumConverged(below_));
