@@ -189,6 +189,7 @@ void SetMeshReport(const MeshReport& report, v1::MeshReport* message) {
   message->set_bridging_distance(report.bridging_distance);
   message->set_attached_components(report.attached_components);
   message->set_attached_faces(report.attached_faces);
+  message->set_coarse_vertices(report.coarse_vertices);
   for (v1::Finding& finding : FindingsAbout(report)) {
     *message->add_findings() = std::move(finding);
   }

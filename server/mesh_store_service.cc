@@ -67,7 +67,7 @@ bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count) {
   return std::all_of(bodies.bodies.begin(), bodies.bodies.end(),
                      [&](const Body& body) {
                        return context.spectra.Contains(
-                           *body.canonical, PairsOfBody(body, count));
+                           body.Computed(), PairsOfBody(body, count));
                      });
 }
 

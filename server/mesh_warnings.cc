@@ -68,6 +68,10 @@ constexpr Kind kKinds[] = {
      "part",
      "components are too small to be segmented, and have the label of the "
      "nearest part"},
+    {"COARSENED", false, &MeshReport::coarse_vertices,
+     "vertex is left of a mesh so large; its parts are found on that",
+     "vertices are left of a mesh so large for its parts to be found on; its "
+     "own faces have the labels of theirs"},
     {"UNUSED_POINTS", true, &MeshReport::unused_points,
      "point is in no face, and without a label",
      "points are in no face, and without a label"},

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <span>
@@ -57,12 +58,13 @@ class Pieces {
   std::vector<std::vector<uint32_t>> faces_;  // of each piece
 };
 
-// What boundaries are moved on.
+// What boundaries are moved on, and how.
 struct Surface {
   const TriangleMesh& mesh;
   const Adjacency& adjacency;
   const FaceLinks& links;
-  const Curvature& curvature;
+  const Curvature* curvature;  // null where short cuts are all that is wanted
+  double most_breadth;         // of the band
   const Positions unit = UnitAreaPositions(mesh);
 
   double Length(uint32_t e) const {
@@ -139,7 +141,7 @@ class Mover {
   // Whether something of the piece is left outside of the band.
   bool AddBand(const std::vector<uint32_t>& boundary, uint32_t piece,
                const Pieces& pieces) {
-    const double limit = kBandWidth * radius_;
+    const double limit = std::min(kBandWidth * radius_, surface_.most_breadth);
     flood_.Run(boundary, limit / kBandShare,
                [&](uint32_t f) { return pieces.Of(f) == piece; });
     const double breadth = std::min(limit, kBandShare * flood_.farthest());
@@ -182,8 +184,9 @@ class Mover {
   }
 
   double Cost(uint32_t e) const {
+    if (surface_.curvature == nullptr) return surface_.Length(e);
     const auto [u, v] = surface_.adjacency.EdgeVertices(e);
-    const Curvature& curvature = surface_.curvature;
+    const Curvature& curvature = *surface_.curvature;
     const double width = kCreaseWidth * radius_;
     const double K = (curvature.At(u, width) + curvature.At(v, width)) / 2;
     const double bend = std::tanh(K * radius_ * radius_ / kCreaseCurvature);
@@ -208,6 +211,28 @@ std::vector<std::array<uint32_t, 2>> LinkPairs(const FaceLinks& links,
   return pairs;
 }
 
+absl::Status Move(const Surface& surface, const std::vector<double>& face_areas,
+                  int passes, const CancelToken& cancel,
+                  std::vector<uint32_t>& piece_of_face) {
+  const uint32_t num_pieces =
+      *std::max_element(piece_of_face.begin(), piece_of_face.end()) + 1;
+  const auto pairs = LinkPairs(surface.links, surface.mesh.NumFaces());
+  Team team(UsualThreads());
+  std::vector<Mover> movers;
+  for (int i = 0; i < team.threads(); ++i) movers.emplace_back(surface);
+  for (int pass = 0; pass < passes; ++pass) {
+    Pieces pieces(num_pieces, piece_of_face);
+    ForPairs(team, Neighbours(surface.adjacency, piece_of_face),
+             [&](int worker, const PiecePair& pair) {
+               if (!cancel.IsCancelled()) movers[worker].Move(pair, pieces);
+             });
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    JoinStrayPieces(surface.adjacency, face_areas, pairs, num_pieces,
+                    piece_of_face);
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status MoveBoundaries(const TriangleMesh& mesh,
@@ -216,23 +241,19 @@ absl::Status MoveBoundaries(const TriangleMesh& mesh,
                             const FaceLinks& links, const Curvature& curvature,
                             const CancelToken& cancel,
                             std::vector<uint32_t>& piece_of_face) {
-  const uint32_t num_pieces =
-      *std::max_element(piece_of_face.begin(), piece_of_face.end()) + 1;
-  const auto pairs = LinkPairs(links, mesh.NumFaces());
-  const Surface surface{mesh, adjacency, links, curvature};
-  Team team(UsualThreads());
-  std::vector<Mover> movers;
-  for (int i = 0; i < team.threads(); ++i) movers.emplace_back(surface);
-  for (int pass = 0; pass < kMovePasses; ++pass) {
-    Pieces pieces(num_pieces, piece_of_face);
-    ForPairs(team, Neighbours(adjacency, piece_of_face),
-             [&](int worker, const PiecePair& pair) {
-               if (!cancel.IsCancelled()) movers[worker].Move(pair, pieces);
-             });
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-    JoinStrayPieces(adjacency, face_areas, pairs, num_pieces, piece_of_face);
-  }
-  return absl::OkStatus();
+  const Surface surface{mesh, adjacency, links, &curvature,
+                        std::numeric_limits<double>::infinity()};
+  return Move(surface, face_areas, kMovePasses, cancel, piece_of_face);
+}
+
+absl::Status SmoothBoundaries(const TriangleMesh& mesh,
+                              const Adjacency& adjacency,
+                              const std::vector<double>& face_areas,
+                              const FaceLinks& links, double breadth,
+                              const CancelToken& cancel,
+                              std::vector<uint32_t>& piece_of_face) {
+  const Surface surface{mesh, adjacency, links, nullptr, breadth};
+  return Move(surface, face_areas, 1, cancel, piece_of_face);
 }
 
 }  // namespace marrow

@@ -38,6 +38,16 @@ absl::Status MoveBoundaries(const TriangleMesh& mesh,
                             const CancelToken& cancel,
                             std::vector<uint32_t>& piece_of_face);
 
+// Moves boundaries that are in the right place but for the zigzag of a coarser
+// mesh: once each, to where they are shortest, no farther than `breadth` to
+// either side (of a mesh of area 1). All else as above.
+absl::Status SmoothBoundaries(const TriangleMesh& mesh,
+                              const Adjacency& adjacency,
+                              const std::vector<double>& face_areas,
+                              const FaceLinks& links, double breadth,
+                              const CancelToken& cancel,
+                              std::vector<uint32_t>& piece_of_face);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_BOUNDARIES_BOUNDARY_MOVER_H_

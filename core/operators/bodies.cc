@@ -235,6 +235,21 @@ Body WholeBody(const CanonicalMesh& mesh) {
   return body;
 }
 
+// Rule 5, noted in the report.
+void CoarsenLarge(Bodies& bodies, MeshReport& report) {
+  report.coarse_vertices = 0;
+  for (Body& body : bodies.bodies) {
+    const TriangleMesh& mesh = body.canonical->mesh;
+    if (mesh.NumVertices() <= kLargeBody) continue;
+    CoarseMesh coarse = Coarsen(mesh, kCoarseVertices);
+    const uint32_t left = coarse.canonical.mesh.NumVertices();
+    if (left > mesh.NumVertices() / 2) continue;
+    body.coarse = std::make_shared<const CoarseMesh>(std::move(coarse));
+    report.coarse_vertices += left;
+    report.body_vertices -= mesh.NumVertices() - left;
+  }
+}
+
 void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
           double distance, MeshReport& report) {
   report.bodies = bodies.size();
@@ -250,9 +265,8 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
   }
 }
 
-}  // namespace
-
-Bodies FindBodies(CanonicalMesh& mesh) {
+// Rules 1 to 4.
+Bodies SortOut(CanonicalMesh& mesh) {
   Bodies result;
   result.anchors = Iota(mesh.mesh.NumFaces());
   if (mesh.report.components == 1) {
@@ -292,6 +306,14 @@ Bodies FindBodies(CanonicalMesh& mesh) {
     sum += body.share;
   }
   for (Body& body : result.bodies) body.share /= sum;
+  return result;
+}
+
+}  // namespace
+
+Bodies FindBodies(CanonicalMesh& mesh) {
+  Bodies result = SortOut(mesh);
+  CoarsenLarge(result, mesh.report);
   return result;
 }
 

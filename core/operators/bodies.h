@@ -16,6 +16,9 @@
 //     a body that is too small for rule 3, has at every level the label of the
 //     face nearest to it by vertices. It enters no operator, so a mesh with
 //     specks is segmented exactly as without.
+//  5. A body of more than kLargeBody vertices is computed on a coarse mesh of
+//     about kCoarseVertices (core/mesh/coarse_mesh.h): its parts are far larger
+//     than what that leaves out. Not where half of the vertices cannot go.
 #ifndef MARROW_CORE_OPERATORS_BODIES_H_
 #define MARROW_CORE_OPERATORS_BODIES_H_
 
@@ -24,6 +27,7 @@
 #include <vector>
 
 #include "core/mesh/canonical_mesh.h"
+#include "core/mesh/coarse_mesh.h"
 #include "core/operators/bridges.h"
 
 namespace marrow {
@@ -33,15 +37,23 @@ inline constexpr double kLightWeight = 1e-4;
 inline constexpr double kMainShare = 0.5;
 inline constexpr double kBodyShare = 0.05;
 inline constexpr uint32_t kMaxBodies = 32;
+inline constexpr uint32_t kLargeBody = 80'000;
+inline constexpr uint32_t kCoarseVertices = 40'000;
 
 struct Body {
-  // The mesh to compute on: a submesh, or, where nothing is attached and there
-  // is one body, the whole mesh itself, which must then outlive this.
+  // A submesh, or, where nothing is attached and there is one body, the whole
+  // mesh itself, which must then outlive this.
   std::shared_ptr<const CanonicalMesh> canonical;
+  std::shared_ptr<const CoarseMesh> coarse;  // of canonical; null for most
   std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
   std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
-  std::vector<Bridge> bridges;     // what the operator adds, own vertices
+  std::vector<Bridge> bridges;     // between its shells, own vertices
   double share = 1;                // of the area of all bodies
+
+  // What is computed on.
+  const CanonicalMesh& Computed() const {
+    return coarse == nullptr ? *canonical : coarse->canonical;
+  }
 };
 
 // Immutable once built.
@@ -54,6 +66,10 @@ struct Bodies {
   // Whether the whole mesh is one body, so that nothing need be mapped.
   bool IsWhole() const {
     return bodies.size() == 1 && bodies[0].faces.size() == anchors.size();
+  }
+  // Whether what is computed on is the whole mesh.
+  bool IsComputedWhole() const {
+    return IsWhole() && bodies[0].coarse == nullptr;
   }
 };
 

@@ -43,19 +43,21 @@ struct PreparedBody::Own {
 PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
                            uint32_t most_pairs,
                            std::unique_ptr<EigenPairStream> stream)
-    : area_(body.canonical->report.area),
+    : area_(body.Computed().report.area),
       share_(body.share),
-      most_pairs_(std::min(most_pairs, body.canonical->mesh.NumVertices() - 1)),
-      own_(prepared.bodies.IsWhole()
+      most_pairs_(std::min(most_pairs, body.Computed().mesh.NumVertices() - 1)),
+      own_(prepared.bodies.IsComputedWhole()
                ? nullptr
-               : std::make_shared<const Own>(body.canonical->mesh)),
+               : std::make_shared<const Own>(body.Computed().mesh)),
       stream_(std::move(stream)),
       pulled_{std::make_shared<const EigenPairs>(), 0},
-      context_{body.canonical->mesh,
+      context_{body.Computed().mesh,
                own_ ? own_->adjacency : prepared.adjacency, pulled_,
                own_ ? own_->areas : prepared.areas,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
-                         body.bridges)} {}
+                         body.coarse == nullptr
+                             ? body.bridges
+                             : FindBridges(body.Computed().mesh))} {}
 
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,

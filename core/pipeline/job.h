@@ -53,8 +53,9 @@ struct Prepared {
 };
 Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies);
 
-// A body, ready to be split. Of a mesh that is one body, what is prepared is
-// used again, so `prepared` and the body must outlive it.
+// What is computed on of a body, ready to be split. Where that is the whole
+// mesh, what is prepared is used again, so `prepared` and the body must outlive
+// it.
 class PreparedBody {
  public:
   // Of a stream of `most_pairs`. There are no pairs before the first Pull().

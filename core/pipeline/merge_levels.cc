@@ -2,11 +2,13 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/base/status_macros.h"
 #include "core/boundaries/calibration.h"
+#include "core/hierarchy/fine_tree.h"
 #include "core/hierarchy/forest.h"
 #include "core/hierarchy/merge_tree.h"
 #include "core/hierarchy/merged_pieces.h"
@@ -15,12 +17,25 @@
 namespace marrow {
 namespace {
 
+// What was found on a coarse mesh, on the body's own.
+absl::StatusOr<MergeTree> OnOwnMesh(const Job& job, const Body& body,
+                                    MergeTree merged) {
+  if (body.coarse == nullptr) return merged;
+  const TriangleMesh& mesh = body.canonical->mesh;
+  std::optional<Adjacency> own;
+  if (!job.prepared.bodies.IsWhole()) own.emplace(mesh);
+  const Adjacency& adjacency = own ? *own : job.prepared.adjacency;
+  return ToFine(merged, *body.coarse, mesh, adjacency,
+                FaceLinks(adjacency, body.bridges), job.cancel);
+}
+
 // The tree of every body, in their order.
 absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
   const SegmentationOptions& options = job.options;
   std::vector<MergeTree> trees;
   double before = 0;
-  for (const auto& body : job.bodies) {
+  for (size_t b = 0; b < job.bodies.size(); ++b) {
+    const auto& body = job.bodies[b];
     absl::Status reported;
     const auto pull = [&](double area_share, const ProgressCallback& progress) {
       return body->Pull(area_share, options.split.delta, job.cancel, progress);
@@ -35,6 +50,9 @@ absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
         BuildMergeTree(body->context(), options.split, body->area(),
                        options.levels, job.cancel, pull, report));
     MARROW_RETURN_IF_ERROR(reported);
+    MARROW_ASSIGN_OR_RETURN(
+        merged,
+        OnOwnMesh(job, job.prepared.bodies.bodies[b], std::move(merged)));
     trees.push_back(std::move(merged));
     before += body->share();
   }
@@ -42,7 +60,7 @@ absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
 }
 
 SegmentTree OneTree(const Prepared& prepared, std::vector<MergeTree>& trees) {
-  if (prepared.bodies.IsWhole()) return std::move(trees[0].tree);
+  if (prepared.bodies.IsComputedWhole()) return std::move(trees[0].tree);
   std::vector<const SegmentTree*> pointers;
   for (const MergeTree& tree : trees) pointers.push_back(&tree.tree);
   return PlantForest(prepared.canonical, prepared.areas, prepared.bodies,

@@ -10,24 +10,12 @@
 #include "core/pipeline/methods.h"
 
 namespace marrow {
-namespace {
-
-// DecodeDraco, then Canonicalize.
-absl::StatusOr<CanonicalMesh> LoadCanonical(std::string_view draco_bytes,
-                                            const MeshLimits& limits) {
-  MARROW_ASSIGN_OR_RETURN(const DecodedMesh decoded,
-                          DecodeDraco(draco_bytes, limits));
-  return Canonicalize(decoded);
-}
-
-}  // namespace
 
 absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
                                        const MeshLimits& limits) {
-  MARROW_ASSIGN_OR_RETURN(CanonicalMesh canonical,
-                          LoadCanonical(draco_bytes, limits));
-  (void)FindBodies(canonical);
-  return canonical;
+  MARROW_ASSIGN_OR_RETURN(const DecodedMesh decoded,
+                          DecodeDraco(draco_bytes, limits));
+  return Canonicalize(decoded);
 }
 
 std::vector<uint32_t> PointOfVertex(const CanonicalMesh& mesh) {
@@ -47,7 +35,7 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kMesh, 0));
   const auto workspace = std::make_shared<Workspace>();
   CanonicalMesh& canonical = workspace->canonical;
-  MARROW_ASSIGN_OR_RETURN(canonical, LoadCanonical(draco_bytes, limits));
+  MARROW_ASSIGN_OR_RETURN(canonical, LoadMesh(draco_bytes, limits));
   const Bodies& bodies = workspace->bodies = FindBodies(canonical);
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
@@ -56,7 +44,7 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   for (const Body& body : bodies.bodies) {
     const uint32_t most = PairsOfBody(body, options.eigen_pairs);
     workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
-        prepared, body, most, pairs.Open(*body.canonical, most)));
+        prepared, body, most, pairs.Open(body.Computed(), most)));
   }
   const Job job{workspace, prepared, workspace->prepared_bodies,
                 options,   cancel,   reporter,

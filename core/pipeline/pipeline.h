@@ -55,7 +55,7 @@ class Sink {
   }
 };
 
-// DecodeDraco, Canonicalize, then FindBodies for the report.
+// DecodeDraco, then Canonicalize.
 absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
                                        const MeshLimits& limits);
 

@@ -4,11 +4,28 @@
 #include <utility>
 
 #include "core/base/status_macros.h"
+#include "core/hierarchy/fine_tree.h"
 #include "core/hierarchy/segment_node.h"
 #include "core/pipeline/job.h"
 #include "core/pipeline/labels.h"
 
 namespace marrow {
+namespace {
+
+// The coarse faces whose own fine one is among `faces`, ascending; that of the
+// first where there are none.
+std::vector<uint32_t> ComputedFaces(const CoarseMesh& coarse,
+                                    const std::vector<uint32_t>& faces) {
+  std::vector<uint32_t> computed;
+  for (uint32_t f : faces)
+    if (coarse.faces[coarse.coarse_face[f]] == f)
+      computed.push_back(coarse.coarse_face[f]);
+  if (computed.empty()) computed.push_back(coarse.coarse_face[faces.front()]);
+  std::sort(computed.begin(), computed.end());
+  return computed;
+}
+
+}  // namespace
 
 SegmentedMesh::SegmentedMesh(std::shared_ptr<const Workspace> workspace,
                              const SplitOptions& options, SegmentTree tree,
@@ -108,8 +125,15 @@ std::vector<uint32_t> SegmentedMesh::MedialStructure(
       own.push_back(static_cast<uint32_t>(
           std::lower_bound(body.faces.begin(), body.faces.end(), f) -
           body.faces.begin()));
-  std::vector<uint32_t> vertices = MedialStructureOf(
-      workspace_->prepared_bodies[b]->context(), own, options_);
+  const SplitContext& context = workspace_->prepared_bodies[b]->context();
+  std::vector<uint32_t> vertices;
+  if (body.coarse == nullptr) {
+    vertices = MedialStructureOf(context, own, options_);
+  } else {
+    vertices =
+        MedialStructureOf(context, ComputedFaces(*body.coarse, own), options_);
+    vertices = ToFine(vertices, *body.coarse, body.canonical->mesh, own);
+  }
   for (uint32_t& v : vertices) v = body.vertices[v];
   return vertices;
 }

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <utility>
 
 #include "core/base/status_macros.h"
+#include "core/hierarchy/fine_tree.h"
 #include "core/hierarchy/forest.h"
 #include "core/hierarchy/tree_builder.h"
 #include "core/pipeline/methods.h"
@@ -85,19 +87,28 @@ class Forest {
   }
 
   const SegmentTree& tree() const {
-    return prepared_.bodies.IsWhole() ? bodies_[0].builder.tree() : tree_;
+    return prepared_.bodies.IsComputedWhole() ? bodies_[0].builder.tree()
+                                              : tree_;
   }
   // At most once, and the last.
   SegmentTree TakeTree() {
-    return prepared_.bodies.IsWhole() ? bodies_[0].builder.TakeTree()
-                                      : std::move(tree_);
+    return prepared_.bodies.IsComputedWhole() ? bodies_[0].builder.TakeTree()
+                                              : std::move(tree_);
   }
 
  private:
   void Plant() {
-    if (prepared_.bodies.IsWhole()) return;
+    if (prepared_.bodies.IsComputedWhole()) return;
+    std::deque<SegmentTree> fine;
     std::vector<const SegmentTree*> trees;
-    for (const Growing& body : bodies_) trees.push_back(&body.builder.tree());
+    for (size_t b = 0; b < bodies_.size(); ++b) {
+      const SegmentTree& tree = bodies_[b].builder.tree();
+      const Body& body = prepared_.bodies.bodies[b];
+      trees.push_back(body.coarse == nullptr
+                          ? &tree
+                          : &fine.emplace_back(ToFine(tree, *body.coarse,
+                                                      body.canonical->mesh)));
+    }
     tree_ = PlantForest(prepared_.canonical, prepared_.areas, prepared_.bodies,
                         trees, BodyRoots::kLevelOne);
   }

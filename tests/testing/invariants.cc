@@ -38,6 +38,7 @@ void ExpectSoundFamily(const Adjacency& adjacency, const SegmentTree& tree,
                        const SegmentNode& node, bool in_order) {
   std::vector<uint32_t> faces;
   double area = 0;
+  const bool in_one = CountPieces(adjacency, node.faces) == 1;
   for (size_t i = 0; i < node.children.size(); ++i) {
     const SegmentNode& child = tree.nodes[node.children[i]];
     EXPECT_GT(child.id, node.id);
@@ -45,7 +46,7 @@ void ExpectSoundFamily(const Adjacency& adjacency, const SegmentTree& tree,
     EXPECT_EQ(child.level, node.level + 1);
     faces.insert(faces.end(), child.faces.begin(), child.faces.end());
     area += child.area;
-    if (CountPieces(adjacency, node.faces) == 1) {
+    if (in_one) {
       EXPECT_EQ(CountPieces(adjacency, child.faces), 1u) << "node " << child.id;
     }
     if (i == 0) continue;
@@ -98,18 +99,22 @@ bool Touch(const TriangleMesh& mesh, const SegmentTree& tree, uint32_t a,
 
 uint32_t CountPieces(const Adjacency& adjacency,
                      const std::vector<uint32_t>& faces) {
-  std::set<uint32_t> left(faces.begin(), faces.end());
+  std::vector<bool> left(adjacency.NumFaces(), false);
+  for (uint32_t f : faces) left[f] = true;
   uint32_t pieces = 0;
-  while (!left.empty()) {
-    ++pieces;
-    std::vector<uint32_t> stack = {*left.begin()};
-    left.erase(left.begin());
+  std::vector<uint32_t> stack;
+  const auto take = [&](uint32_t f) {
+    if (left[f]) stack.push_back(f);
+    left[f] = false;
+  };
+  for (uint32_t first : faces) {
+    pieces += left[first];
+    take(first);
     while (!stack.empty()) {
       const uint32_t f = stack.back();
       stack.pop_back();
       for (uint32_t e : adjacency.FaceEdges(f))
-        for (uint32_t g : adjacency.EdgeFaces(e))
-          if (left.erase(g)) stack.push_back(g);
+        for (uint32_t g : adjacency.EdgeFaces(e)) take(g);
     }
   }
   return pieces;
@@ -117,10 +122,12 @@ uint32_t CountPieces(const Adjacency& adjacency,
 
 std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
                                  const std::vector<uint32_t>& faces) {
-  std::set<uint32_t> vertices;
+  std::vector<uint32_t> vertices;
   for (uint32_t f : faces)
-    vertices.insert(mesh.faces[f].begin(), mesh.faces[f].end());
-  return {vertices.begin(), vertices.end()};
+    vertices.insert(vertices.end(), mesh.faces[f].begin(), mesh.faces[f].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
 }
 
 void ExpectSoundTree(const TriangleMesh& mesh, const Adjacency& adjacency,

@@ -1,0 +1,93 @@
+#include "core/hierarchy/fine_tree.h"
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "core/base/status_macros.h"
+#include "core/boundaries/boundary_mover.h"
+#include "core/boundaries/curvature.h"
+#include "core/operators/laplacian.h"
+
+namespace marrow {
+namespace {
+
+// Of a mesh of area 1.
+double MeanEdge(const TriangleMesh& mesh) {
+  const Positions unit = UnitAreaPositions(mesh);
+  double sum = 0;
+  for (const Triangle& face : mesh.faces)
+    for (int i = 0; i < 3; ++i)
+      sum += (unit.row(face[i]) - unit.row(face[(i + 1) % 3])).norm();
+  return sum / (3.0 * mesh.NumFaces());
+}
+
+// `piece_of_coarse` and `piece_of_fine` name the piece of each face; no node
+// divides a piece.
+SegmentTree Spread(const SegmentTree& tree, const CoarseMesh& coarse,
+                   const TriangleMesh& fine,
+                   const std::vector<uint32_t>& piece_of_coarse,
+                   const std::vector<uint32_t>& piece_of_fine) {
+  SegmentTree result = tree;
+  for (SegmentNode& node : result.nodes) node.faces.clear();
+  result.nodes[0].faces.resize(piece_of_fine.size());
+  std::iota(result.nodes[0].faces.begin(), result.nodes[0].faces.end(), 0u);
+  std::vector<uint32_t> node_of_piece(coarse.faces.size());
+  for (const SegmentNode& node : tree.nodes) {
+    for (uint32_t child : node.children)
+      for (uint32_t f : tree.nodes[child].faces)
+        node_of_piece[piece_of_coarse[f]] = child;
+    if (node.children.empty()) continue;
+    for (uint32_t f : result.nodes[node.id].faces)
+      result.nodes[node_of_piece[piece_of_fine[f]]].faces.push_back(f);
+  }
+  for (SegmentNode& node : result.nodes)
+    node.medial_structure =
+        ToFine(node.medial_structure, coarse, fine, node.faces);
+  return result;
+}
+
+}  // namespace
+
+std::vector<uint32_t> ToFine(const std::vector<uint32_t>& vertices,
+                             const CoarseMesh& coarse, const TriangleMesh& fine,
+                             const std::vector<uint32_t>& faces) {
+  std::vector<bool> has(fine.NumVertices(), false);
+  for (uint32_t f : faces)
+    for (uint32_t v : fine.faces[f]) has[v] = true;
+  std::vector<uint32_t> result;
+  for (uint32_t v : vertices)
+    if (has[coarse.vertices[v]]) result.push_back(coarse.vertices[v]);
+  if (result.empty()) result.push_back(fine.faces[faces.front()][0]);
+  return result;
+}
+
+SegmentTree ToFine(const SegmentTree& tree, const CoarseMesh& coarse,
+                   const TriangleMesh& fine) {
+  std::vector<uint32_t> own(coarse.faces.size());
+  std::iota(own.begin(), own.end(), 0u);
+  return Spread(tree, coarse, fine, own, coarse.coarse_face);
+}
+
+absl::StatusOr<MergeTree> ToFine(const MergeTree& merged,
+                                 const CoarseMesh& coarse,
+                                 const TriangleMesh& fine,
+                                 const Adjacency& adjacency,
+                                 const FaceLinks& links,
+                                 const CancelToken& cancel) {
+  constexpr double kBreadth = 2;  // in coarse edges
+  MergeTree result;
+  result.order = merged.order;
+  result.piece_of_face = coarse.coarse_face;
+  for (uint32_t& piece : result.piece_of_face)
+    piece = merged.piece_of_face[piece];
+  MARROW_RETURN_IF_ERROR(
+      SmoothBoundaries(fine, adjacency, FaceAreaShares(fine), links,
+                       kBreadth * MeanEdge(coarse.canonical.mesh), cancel,
+                       result.piece_of_face));
+  result.tree = Spread(merged.tree, coarse, fine, merged.piece_of_face,
+                       result.piece_of_face);
+  return result;
+}
+
+}  // namespace marrow

@@ -1,0 +1,312 @@
+#include "core/mesh/coarse_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "absl/container/inlined_vector.h"
+#include "core/mesh/mesh_report.h"
+
+namespace marrow {
+namespace {
+
+// A vertex of more faces is neither taken away nor grown: checking an edge
+// takes the square of its ends' faces.
+constexpr size_t kMostFaces = 24;
+// Of the vertices, those with the shortest edges go first: so many in a round.
+constexpr double kShareARound = 0.5;
+// Rounds that take away less are not worth their while.
+constexpr double kLeastGain = 0.01;
+// Cosine of the most that a face may be turned.
+constexpr double kMostTurn = 0.5;
+// Twice the area over the squared longest edge: 0.87 for an equilateral
+// triangle. Faces must not become worse than that, unless they were.
+constexpr double kLeastQuality = 0.2;
+
+bool Has(const Triangle& face, uint32_t v) {
+  return face[0] == v || face[1] == v || face[2] == v;
+}
+
+// The corners of a face beside one of them, in the order of the face.
+std::pair<uint32_t, uint32_t> Others(const Triangle& face, uint32_t v) {
+  if (face[0] == v) return {face[1], face[2]};
+  if (face[1] == v) return {face[2], face[0]};
+  return {face[0], face[1]};
+}
+
+// Entry i -> where following the entries ends.
+void Follow(std::vector<uint32_t>& next) {
+  for (uint32_t i = 0; i < next.size(); ++i) {
+    uint32_t end = i;
+    while (next[end] != end) end = next[end];
+    for (uint32_t at = i; at != end;) at = std::exchange(next[at], end);
+  }
+}
+
+class Coarsener {
+ public:
+  explicit Coarsener(const TriangleMesh& mesh)
+      : mesh_(mesh),
+        corners_(mesh.faces),
+        live_(mesh.NumFaces()),
+        gone_(mesh.NumVertices(), false),
+        heir_(mesh.NumFaces()),
+        num_vertices_(mesh.NumVertices()) {
+    std::iota(live_.begin(), live_.end(), 0u);
+    std::iota(heir_.begin(), heir_.end(), 0u);
+  }
+
+  uint32_t num_vertices() const { return num_vertices_; }
+
+  // Takes away vertices that are no neighbours of each other, down to `least`.
+  void Round(uint32_t least) {
+    GatherStars();
+    locked_.assign(mesh_.NumVertices(), false);
+    for (uint32_t u : ShortestFirst()) {
+      if (num_vertices_ <= least) break;
+      if (!locked_[u]) TryCollapse(u);
+    }
+    std::erase_if(live_, [&](uint32_t f) { return heir_[f] != f; });
+  }
+
+  CoarseMesh Take() {
+    CoarseMesh result;
+    TriangleMesh& coarse = result.canonical.mesh;
+    coarse.positions.resize(num_vertices_, 3);
+    std::vector<uint32_t> own(mesh_.NumVertices(), kNoIndex);
+    for (uint32_t v = 0; v < own.size(); ++v) {
+      if (gone_[v]) continue;
+      own[v] = static_cast<uint32_t>(result.vertices.size());
+      coarse.positions.row(own[v]) = mesh_.positions.row(v);
+      result.vertices.push_back(v);
+    }
+    TakeFaces(own, result);
+    result.canonical.report = ReportOn(coarse);
+    result.canonical.geometry_digest = GeometryDigestOf(coarse);
+    return result;
+  }
+
+ private:
+  using Ring = absl::InlinedVector<uint32_t, kMostFaces + 1>;
+
+  std::span<const uint32_t> Star(uint32_t v) const {
+    return {star_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
+  }
+
+  // The live faces at each vertex.
+  void GatherStars() {
+    offsets_.assign(mesh_.NumVertices() + 1, 0);
+    for (uint32_t f : live_)
+      for (uint32_t v : corners_[f]) ++offsets_[v + 1];
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    star_.resize(3 * live_.size());
+    std::vector<uint32_t> end(offsets_.begin(), offsets_.end() - 1);
+    for (uint32_t f : live_)
+      for (uint32_t v : corners_[f]) star_[end[v]++] = f;
+  }
+
+  double SquaredLength(uint32_t a, uint32_t b) const {
+    return (mesh_.positions.row(a) - mesh_.positions.row(b)).squaredNorm();
+  }
+
+  // The vertices with the shortest edges, by these, then by their numbers.
+  std::vector<uint32_t> ShortestFirst() const {
+    std::vector<double> shortest(mesh_.NumVertices(),
+                                 std::numeric_limits<double>::infinity());
+    for (uint32_t f : live_)
+      for (int i = 0; i < 3; ++i) {
+        const uint32_t a = corners_[f][i], b = corners_[f][(i + 1) % 3];
+        const double length = SquaredLength(a, b);
+        shortest[a] = std::min(shortest[a], length);
+        shortest[b] = std::min(shortest[b], length);
+      }
+    std::vector<std::pair<double, uint32_t>> order;
+    order.reserve(num_vertices_);
+    for (uint32_t v = 0; v < shortest.size(); ++v)
+      if (!gone_[v]) order.push_back({shortest[v], v});
+    const auto middle =
+        order.begin() + static_cast<size_t>(kShareARound * order.size());
+    std::nth_element(order.begin(), middle, order.end());
+    std::sort(order.begin(), middle);
+    std::vector<uint32_t> vertices;
+    vertices.reserve(middle - order.begin());
+    for (auto it = order.begin(); it != middle; ++it)
+      vertices.push_back(it->second);
+    return vertices;
+  }
+
+  // Into the nearest neighbour that allows it.
+  void TryCollapse(uint32_t u) {
+    if (Star(u).size() > kMostFaces) return;
+    const Ring ring = RingOf(u);
+    Ring ends;  // of boundary edges
+    for (uint32_t v : ring)
+      if (CountShared(u, v) == 1) ends.push_back(v);
+    if (!IsFan(u, ring, ends.size())) return;
+    std::vector<std::pair<double, uint32_t>> near;
+    for (uint32_t v : ends.empty() ? ring : ends)
+      if (!locked_[v] && Star(v).size() <= kMostFaces)
+        near.push_back({SquaredLength(u, v), v});
+    std::sort(near.begin(), near.end());
+    for (const auto& [length, v] : near) {
+      if (!LinkHolds(u, v, ring) || !ShapesHold(u, v)) continue;
+      Collapse(u, v, ring);
+      return;
+    }
+  }
+
+  // Its neighbours, ascending.
+  Ring RingOf(uint32_t u) const {
+    Ring ring;
+    for (uint32_t f : Star(u))
+      for (uint32_t v : corners_[f])
+        if (v != u) ring.push_back(v);
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    return ring;
+  }
+
+  size_t CountShared(uint32_t u, uint32_t v) const {
+    size_t count = 0;
+    for (uint32_t f : Star(u)) count += Has(corners_[f], v);
+    return count;
+  }
+
+  // Whether the faces around u are one fan, closed or with two ends.
+  bool IsFan(uint32_t u, const Ring& ring, size_t num_ends) const {
+    const std::span<const uint32_t> star = Star(u);
+    if (star.size() < 2 || (num_ends != 0 && num_ends != 2)) return false;
+    for (uint32_t v : ring)
+      if (CountShared(u, v) > 2) return false;
+    Ring reached{star[0]};
+    for (size_t i = 0; i < reached.size(); ++i) {
+      const auto [a, b] = Others(corners_[reached[i]], u);
+      for (uint32_t f : star)
+        if ((Has(corners_[f], a) || Has(corners_[f], b)) &&
+            std::find(reached.begin(), reached.end(), f) == reached.end())
+          reached.push_back(f);
+    }
+    return reached.size() == star.size();
+  }
+
+  // Whether collapsing u into v keeps the topology. REQUIRES: a fan around u;
+  // where it has ends, v is one.
+  bool LinkHolds(uint32_t u, uint32_t v, const Ring& ring) const {
+    const size_t shared = CountShared(u, v);
+    if (shared == Star(u).size()) return false;
+    const Ring other = RingOf(v);
+    Ring common;
+    std::set_intersection(ring.begin(), ring.end(), other.begin(), other.end(),
+                          std::back_inserter(common));
+    if (common.size() != shared) return false;
+    // Nor may a face come to lie on another.
+    for (uint32_t f : Star(u)) {
+      if (Has(corners_[f], v)) continue;
+      const auto [a, b] = Others(corners_[f], u);
+      for (uint32_t g : Star(v))
+        if (Has(corners_[g], a) && Has(corners_[g], b)) return false;
+    }
+    return true;
+  }
+
+  bool ShapesHold(uint32_t u, uint32_t v) const {
+    for (uint32_t f : Star(u)) {
+      if (Has(corners_[f], v)) continue;
+      const auto [a, b] = Others(corners_[f], u);
+      const Eigen::Vector3d before = DoubledArea(u, a, b);
+      const Eigen::Vector3d after = DoubledArea(v, a, b);
+      const double norms = before.norm() * after.norm();
+      if (norms > 0 && before.dot(after) < kMostTurn * norms) return false;
+      const double quality = Quality(after.norm(), v, a, b);
+      if (quality < kLeastQuality && quality < Quality(before.norm(), u, a, b))
+        return false;
+    }
+    return true;
+  }
+
+  Eigen::Vector3d DoubledArea(uint32_t a, uint32_t b, uint32_t c) const {
+    const Eigen::Vector3d corner = mesh_.Position(a);
+    return (mesh_.Position(b) - corner).cross(mesh_.Position(c) - corner);
+  }
+
+  double Quality(double doubled_area, uint32_t a, uint32_t b,
+                 uint32_t c) const {
+    return doubled_area / std::max({SquaredLength(a, b), SquaredLength(b, c),
+                                    SquaredLength(c, a)});
+  }
+
+  // A face that goes joins the patch of its neighbour across an edge of u's:
+  // that one comes to be where both were.
+  void Collapse(uint32_t u, uint32_t v, const Ring& ring) {
+    for (uint32_t f : Star(u)) {
+      if (!Has(corners_[f], v)) continue;
+      const auto [a, b] = Others(corners_[f], u);
+      heir_[f] = NeighbourAcross(f, u, a == v ? b : a);
+    }
+    for (uint32_t f : Star(u))
+      if (heir_[f] == f)
+        std::replace(corners_[f].begin(), corners_[f].end(), u, v);
+    gone_[u] = true;
+    --num_vertices_;
+    locked_[u] = true;
+    for (uint32_t w : ring) locked_[w] = true;
+  }
+
+  uint32_t NeighbourAcross(uint32_t f, uint32_t u, uint32_t w) const {
+    for (uint32_t g : Star(u))
+      if (g != f && Has(corners_[g], w)) return g;
+    return f;  // not in a fan of two faces or more whose end is not w
+  }
+
+  // `own` is the coarse number of each fine vertex that is left.
+  void TakeFaces(const std::vector<uint32_t>& own, CoarseMesh& result) {
+    Follow(heir_);
+    std::vector<std::pair<Triangle, uint32_t>> sorted;
+    sorted.reserve(live_.size());
+    for (uint32_t f : live_) {
+      Triangle face = corners_[f];
+      for (uint32_t& corner : face) corner = own[corner];
+      std::rotate(face.begin(), std::min_element(face.begin(), face.end()),
+                  face.end());
+      sorted.push_back({face, f});
+    }
+    std::sort(sorted.begin(), sorted.end());
+    result.coarse_face.assign(mesh_.NumFaces(), kNoIndex);
+    for (const auto& [corners, f] : sorted) {
+      result.coarse_face[f] = static_cast<uint32_t>(result.faces.size());
+      result.faces.push_back(f);
+      result.canonical.mesh.faces.push_back(corners);
+    }
+    for (uint32_t f = 0; f < heir_.size(); ++f)
+      result.coarse_face[f] = result.coarse_face[heir_[f]];
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<Triangle> corners_;  // of each face, as collapsed so far
+  std::vector<uint32_t> live_;     // faces that are left, ascending
+  std::vector<bool> gone_;         // vertices
+  std::vector<uint32_t> heir_;     // face -> whose patch it joined, or itself
+  uint32_t num_vertices_;
+  // Of the round.
+  std::vector<uint32_t> offsets_;
+  std::vector<uint32_t> star_;
+  std::vector<bool> locked_;  // a face at it has changed
+};
+
+}  // namespace
+
+CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices) {
+  Coarsener coarsener(mesh);
+  for (uint32_t before = mesh.NumVertices(); before > num_vertices;) {
+    coarsener.Round(num_vertices);
+    const uint32_t after = coarsener.num_vertices();
+    if (before - after < kLeastGain * before) break;
+    before = after;
+  }
+  return coarsener.Take();
+}
+
+}  // namespace marrow
