@@ -1,25 +1,20 @@
 #include "core/hierarchy/fine_tree.h"
 
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
 #include "core/base/status_macros.h"
 #include "core/boundaries/boundary_mover.h"
-#include "core/boundaries/curvature.h"
 #include "core/operators/laplacian.h"
 
 namespace marrow {
 namespace {
 
-// Of a mesh of area 1.
-double MeanEdge(const TriangleMesh& mesh) {
-  const Positions unit = UnitAreaPositions(mesh);
-  double sum = 0;
-  for (const Triangle& face : mesh.faces)
-    for (int i = 0; i < 3; ++i)
-      sum += (unit.row(face[i]) - unit.row(face[(i + 1) % 3])).norm();
-  return sum / (3.0 * mesh.NumFaces());
+// The edge of a triangle of the mean area, equilateral, of a mesh of area 1.
+double UsualEdge(const TriangleMesh& mesh) {
+  return std::sqrt(4 / std::sqrt(3.0) / mesh.NumFaces());
 }
 
 // `piece_of_coarse` and `piece_of_fine` name the piece of each face; no node
@@ -83,7 +78,7 @@ absl::StatusOr<MergeTree> ToFine(const MergeTree& merged,
     piece = merged.piece_of_face[piece];
   MARROW_RETURN_IF_ERROR(
       SmoothBoundaries(fine, adjacency, FaceAreaShares(fine), links,
-                       kBreadth * MeanEdge(coarse.canonical.mesh), cancel,
+                       kBreadth * UsualEdge(coarse.canonical.mesh), cancel,
                        result.piece_of_face));
   result.tree = Spread(merged.tree, coarse, fine, merged.piece_of_face,
                        result.piece_of_face);
