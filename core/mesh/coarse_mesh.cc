@@ -19,12 +19,18 @@ constexpr size_t kMostFaces = 24;
 // Of the vertices, those with the shortest edges go first: so many in a round.
 constexpr double kShareARound = 0.5;
 // Rounds that take away less are not worth their while.
-constexpr double kLeastGain = 0.01;
-// Cosine of the most that a face may be turned.
-constexpr double kMostTurn = 0.5;
-// Twice the area over the squared longest edge: 0.87 for an equilateral
-// triangle. Faces must not become worse than that, unless they were.
-constexpr double kLeastQuality = 0.2;
+constexpr double kLeastGain = 0.03;
+
+// What may become of a face.
+struct ShapeLimits {
+  double cosine;  // of the most that it may be turned
+  // Twice the area over the squared longest edge: 0.87 for an equilateral
+  // triangle. Faces must not become worse than that, unless they were.
+  double quality;
+};
+// The second where the first leaves too many vertices: on surfaces all of
+// corners and holes.
+constexpr ShapeLimits kShapeLimits[] = {{0.5, 0.2}, {-0.5, 0.02}};
 
 bool Has(const Triangle& face, uint32_t v) {
   return face[0] == v || face[1] == v || face[2] == v;
@@ -62,7 +68,8 @@ class Coarsener {
   uint32_t num_vertices() const { return num_vertices_; }
 
   // Takes away vertices that are no neighbours of each other, down to `least`.
-  void Round(uint32_t least) {
+  void Round(uint32_t least, const ShapeLimits& limits) {
+    limits_ = limits;
     GatherStars();
     locked_.assign(mesh_.NumVertices(), false);
     for (uint32_t u : ShortestFirst()) {
@@ -219,9 +226,10 @@ class Coarsener {
       const Eigen::Vector3d before = DoubledArea(u, a, b);
       const Eigen::Vector3d after = DoubledArea(v, a, b);
       const double norms = before.norm() * after.norm();
-      if (norms > 0 && before.dot(after) < kMostTurn * norms) return false;
+      if (norms > 0 && before.dot(after) < limits_.cosine * norms) return false;
       const double quality = Quality(after.norm(), v, a, b);
-      if (quality < kLeastQuality && quality < Quality(before.norm(), u, a, b))
+      if (quality < limits_.quality &&
+          quality < Quality(before.norm(), u, a, b))
         return false;
     }
     return true;
@@ -291,6 +299,7 @@ class Coarsener {
   std::vector<uint32_t> heir_;     // face -> whose patch it joined, or itself
   uint32_t num_vertices_;
   // Of the round.
+  ShapeLimits limits_{};
   std::vector<uint32_t> offsets_;
   std::vector<uint32_t> star_;
   std::vector<bool> locked_;  // a face at it has changed
@@ -300,12 +309,12 @@ class Coarsener {
 
 CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices) {
   Coarsener coarsener(mesh);
-  for (uint32_t before = mesh.NumVertices(); before > num_vertices;) {
-    coarsener.Round(num_vertices);
-    const uint32_t after = coarsener.num_vertices();
-    if (before - after < kLeastGain * before) break;
-    before = after;
-  }
+  for (const ShapeLimits& limits : kShapeLimits)
+    while (coarsener.num_vertices() > num_vertices) {
+      const uint32_t before = coarsener.num_vertices();
+      coarsener.Round(num_vertices, limits);
+      if (before - coarsener.num_vertices() < kLeastGain * before) break;
+    }
   return coarsener.Take();
 }
 

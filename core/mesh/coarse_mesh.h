@@ -27,10 +27,11 @@ struct CoarseMesh {
 // Keeps the topology: an edge goes only where the ends have no other neighbours
 // in common than its faces do (the link condition, Dey, Edelsbrunner, Guha and
 // Nekhayev 1999); boundaries stay boundaries, and vertices where the mesh is no
-// manifold stay. No face is turned by more than about 60 degrees or made a
-// sliver. The patches of fine faces partition the fine mesh, each is connected
-// across edges, and two coarse faces that share an edge have patches that do:
-// so what is connected on the coarse mesh is connected on the fine one.
+// manifold stay. No face is turned by more than 60 degrees or made a sliver,
+// unless too many vertices are left by that; then more is allowed. The patches
+// of fine faces partition the fine mesh, each is connected across edges, and
+// two coarse faces that share an edge have patches that do: so what is
+// connected on the coarse mesh is connected on the fine one.
 //
 // `mesh` is canonical. Deterministic; linear in the mesh but for sorting,
 // however many faces a vertex has. Thread safe.
