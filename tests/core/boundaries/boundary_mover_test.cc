@@ -104,6 +104,31 @@ TEST(MoveBoundariesTest, BendingChangesNothing) {
   EXPECT_EQ(Body(rolled).Moved(pieces), flat.Moved(pieces));
 }
 
+// A zigzag of 1 across a strip becomes straight; no farther than the breadth.
+TEST(SmoothBoundariesTest, MakesAZigzagShortWithinItsBreadth) {
+  const Body strip(Grid(40, 20));
+  std::vector<uint32_t> zigzag;
+  for (uint32_t f = 0; f < strip.mesh.NumFaces(); ++f) {
+    const int row =
+        static_cast<int>(strip.mesh.Position(strip.mesh.faces[f][0]).y());
+    zigzag.push_back(strip.X(f) > (row % 4 < 2 ? 19 : 21));
+  }
+  const double unit = std::sqrt(40.0 * 20.0);
+  for (const double breadth : {0.5, 3.0}) {
+    std::vector<uint32_t> pieces = zigzag;
+    ASSERT_TRUE(SmoothBoundaries(strip.mesh, strip.adjacency,
+                                 FaceAreaShares(strip.mesh), {}, breadth / unit,
+                                 CancelToken(), pieces)
+                    .ok());
+    const auto [low, high] = BoundaryRange(strip, pieces);
+    if (breadth < 1) {
+      EXPECT_EQ(std::pair(low, high), BoundaryRange(strip, zigzag));
+    } else {
+      EXPECT_LE(high - low, 1);
+    }
+  }
+}
+
 TEST(MoveBoundariesTest, StopsOnceCancelled) {
   const Body body(Grid(4, 4));
   std::vector<uint32_t> pieces = body.Halves(2);
