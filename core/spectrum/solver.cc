@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
+#include "core/spectrum/dense_solver.h"
 #include "core/spectrum/reference_solver.h"
 #include "core/spectrum/slicing.h"
 #include "core/spectrum/team.h"
@@ -38,6 +39,7 @@ absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
                                              const CancelToken& cancel) {
   MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
                           BuildLaplacian(mesh, cancel));
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   SymmetricProblem problem;
   problem.inverse_sqrt_mass = laplacian.M.cwiseSqrt().cwiseInverse();
   problem.A = problem.inverse_sqrt_mass.asDiagonal() * laplacian.L *
@@ -117,8 +119,10 @@ bool IsDense(int n, int pairs) {
   return n <= kDenseVertices || pairs > kSlicedShare * n;
 }
 
-MatrixPairs SolveDense(const SymmetricProblem& problem, int pairs) {
-  MatrixPairs raw = SolveDensely(problem.A, pairs);
+absl::StatusOr<MatrixPairs> SolveDense(const SymmetricProblem& problem,
+                                       int pairs, const CancelToken& cancel) {
+  MARROW_ASSIGN_OR_RETURN(MatrixPairs raw,
+                          SolveDensely(problem.A, pairs, cancel));
   RemoveConstant(problem.inverse_sqrt_mass, raw);
   return raw;
 }
@@ -173,7 +177,9 @@ class SolverStream : public EigenPairStream {
     }
     const Eigen::Index before = pairs->eigenvalues.size();
     if (slicer_ == nullptr) {
-      Replace(SolveDense(problem_, most_), *pairs);
+      MARROW_ASSIGN_OR_RETURN(const MatrixPairs raw,
+                              SolveDense(problem_, most_, cancel));
+      Replace(raw, *pairs);
     } else {
       MARROW_RETURN_IF_ERROR(Slice(bound, cancel, progress, *pairs));
     }
