@@ -28,8 +28,7 @@ class DenseSolver {
         Q_(Eigen::MatrixXd(matrix).triangularView<Eigen::Lower>()) {}
 
   absl::StatusOr<MatrixPairs> Solve(int pairs) {
-    if (n_ == 1)
-      return MatrixPairs{Q_.col(0), Eigen::MatrixXd::Identity(1, 1)};
+    if (n_ == 1) return MatrixPairs{Q_.col(0), Eigen::MatrixXd::Identity(1, 1)};
     const double largest = Q_.cwiseAbs().maxCoeff();
     const double scale = largest > 0 ? largest : 1;
     Q_ /= scale;
@@ -76,8 +75,8 @@ class DenseSolver {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
       const Index rest = n_ - k - 1;
       Q_.bottomRightCorner(rest, rest)
-          .applyHouseholderOnTheLeft(Q_.col(k).tail(rest - 1),
-                                     coefficients_[k], workspace.data());
+          .applyHouseholderOnTheLeft(Q_.col(k).tail(rest - 1), coefficients_[k],
+                                     workspace.data());
       Q_.col(k).tail(rest).setZero();
     }
     return absl::OkStatus();

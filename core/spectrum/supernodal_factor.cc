@@ -274,8 +274,7 @@ absl::Status SupernodalFactor::Solve(double* X, Team& team,
   for (int k = structure_.first_top; k < num_nodes && !cancel.IsCancelled();
        ++k)
     SolveDown(nodes[k], X, X);
-  for (int k = num_nodes;
-       k-- > structure_.first_top && !cancel.IsCancelled();)
+  for (int k = num_nodes; k-- > structure_.first_top && !cancel.IsCancelled();)
     SolveUp(nodes[k], X);
   team.For(count, [&](int b) {
     for (int k = branches[b].end;

@@ -47,8 +47,9 @@ TEST(DenseSolverTest, TrivialMatrices) {
 TEST(DenseSolverTest, StopsWhenCancelled) {
   CancelToken cancel;
   cancel.Cancel();
-  EXPECT_EQ(SolveDensely(SymmetricForm(Icosphere(1)), 3, cancel).status().code(),
-            absl::StatusCode::kCancelled);
+  EXPECT_EQ(
+      SolveDensely(SymmetricForm(Icosphere(1)), 3, cancel).status().code(),
+      absl::StatusCode::kCancelled);
 }
 
 }  // namespace
