@@ -37,11 +37,11 @@ class LruCache {
   }
 
   // Replaces an entry of the same key. A value above the whole budget is not
-  // kept, and drops nothing else.
+  // kept, and drops nothing.
   void Insert(const Key& key, std::shared_ptr<const Value> value,
               uint64_t bytes) {
-    Erase(key);
     if (bytes > budget_) return;
+    Erase(key);
     while (bytes_ + bytes > budget_) Erase(Key(order_.back()));
     order_.push_front(key);
     entries_.emplace(key, Entry{std::move(value), bytes, order_.begin()});

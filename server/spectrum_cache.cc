@@ -60,6 +60,7 @@ class SpectrumCache::Stream : public EigenPairStream {
       : cache_(cache),
         mesh_(mesh),
         key_(KeyOf(mesh, count)),
+        shared_(cache.solver_->GivesSharedPairs(mesh, key_.count)),
         use_(use != nullptr ? *use : own_use_) {
     use_ = SpectrumUse();
     use_.eigen_pairs = key_.count;
@@ -67,14 +68,21 @@ class SpectrumCache::Stream : public EigenPairStream {
 
   Result UpTo(double bound, const CancelToken& cancel,
               const ProgressCallback& progress) override {
+    MARROW_ASSIGN_OR_RETURN(const auto pairs, Obtain(bound, cancel, progress));
+    return Shortened(pairs);
+  }
+
+ private:
+  // UpTo(), perhaps with more pairs than anyone is to see.
+  Result Obtain(double bound, const CancelToken& cancel,
+                const ProgressCallback& progress) {
     RisingProgress rising(progress);
     std::shared_ptr<Flight> flight;
     {
       absl::MutexLock lock(&cache_.mu_);
       while (flight == nullptr) {
-        if (auto pairs = cache_.entries_.Find(key_);
-            pairs != nullptr && Reach(*pairs, key_.count, bound))
-          return pairs;
+        if (const auto held = cache_.HolderFor(key_, shared_, bound))
+          return cache_.entries_.Find(*held);
         auto [it, inserted] = cache_.flights_.try_emplace(key_);
         if (inserted) {
           flight = it->second = std::make_shared<Flight>();
@@ -92,7 +100,21 @@ class SpectrumCache::Stream : public EigenPairStream {
     return Compute(*flight, bound, cancel, rising);
   }
 
- private:
+  // As many as the stream was opened for. A copy is made once of each entry.
+  Result Shortened(std::shared_ptr<const EigenPairs> pairs) {
+    if (pairs->NumPairs() <= key_.count + 1) return pairs;
+    if (longer_ != pairs) {
+      try {
+        shortened_ = std::make_shared<const EigenPairs>(
+            FirstPairs(*pairs, key_.count + 1));
+      } catch (const std::bad_alloc&) {
+        return absl::ResourceExhaustedError("out of memory for eigen-pairs");
+      }
+      longer_ = std::move(pairs);
+    }
+    return shortened_;
+  }
+
   absl::Status WaitFor(const Flight& other, const CancelToken& cancel,
                        RisingProgress& rising)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(cache_.mu_) {
@@ -132,9 +154,12 @@ class SpectrumCache::Stream : public EigenPairStream {
   SpectrumCache& cache_;
   const CanonicalMesh& mesh_;
   const Key key_;
+  const bool shared_;
   SpectrumUse own_use_;
   SpectrumUse& use_;
   std::unique_ptr<EigenPairStream> solver_;  // null before and after its work
+  // An entry with more pairs than may be given, and those that may.
+  std::shared_ptr<const EigenPairs> longer_, shortened_;
 };
 
 SpectrumCache::SpectrumCache(std::shared_ptr<EigenPairSource> solver,
@@ -147,6 +172,17 @@ SpectrumCache::Key SpectrumCache::KeyOf(const CanonicalMesh& mesh,
   const uint32_t vertices = mesh.mesh.NumVertices();
   const uint32_t most = std::max(vertices, 3u) - 1;
   return {mesh.geometry_digest, std::min(count, most)};
+}
+
+std::optional<SpectrumCache::Key> SpectrumCache::HolderFor(const Key& key,
+                                                           bool shared,
+                                                           double bound) {
+  for (const Key& held : {Key{key.geometry, 0}, key}) {
+    if (held.count == 0 && !shared) continue;
+    const auto pairs = entries_.Peek(held);
+    if (pairs != nullptr && Reach(*pairs, key.count, bound)) return held;
+  }
+  return std::nullopt;
 }
 
 absl::StatusOr<std::shared_ptr<const EigenPairs>> SpectrumCache::Get(
@@ -176,9 +212,11 @@ std::unique_ptr<EigenPairStream> SpectrumCache::Open(const CanonicalMesh& mesh,
 void SpectrumCache::Land(const Key& key, Flight& flight, Result result) {
   absl::MutexLock lock(&mu_);
   if (result.ok()) {
-    const auto entry = entries_.Peek(key);
-    if (entry == nullptr || entry->NumPairs() < (*result)->NumPairs())
-      entries_.Insert(key, *result, (*result)->Bytes() + kEntryOverhead);
+    const EigenPairs& pairs = **result;
+    const Key holder{key.geometry, pairs.for_any_count ? 0 : key.count};
+    const auto entry = entries_.Peek(holder);
+    if (entry == nullptr || entry->NumPairs() < pairs.NumPairs())
+      entries_.Insert(holder, *result, pairs.Bytes() + kEntryOverhead);
   }
   flight.result = std::move(result);
   flights_.erase(key);
@@ -188,8 +226,8 @@ void SpectrumCache::Land(const Key& key, Flight& flight, Result result) {
 bool SpectrumCache::Contains(const CanonicalMesh& mesh, uint32_t count) {
   absl::MutexLock lock(&mu_);
   const Key key = KeyOf(mesh, count);
-  const auto pairs = entries_.Peek(key);
-  return pairs != nullptr && Reach(*pairs, key.count, kInfinity);
+  return HolderFor(key, solver_->GivesSharedPairs(mesh, key.count), kInfinity)
+      .has_value();
 }
 
 uint64_t SpectrumCache::bytes() {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
@@ -26,9 +27,11 @@ struct SpectrumUse {
   uint32_t eigen_pairs = 0;  // without the constant one
 };
 
-// The key is the geometry and the number of pairs that a caller may want in
-// all. An entry holds the first of them, as many as anyone needed so far; it
-// grows.
+// An entry holds the first pairs of a geometry, as many as anyone needed so
+// far, whatever the number that they may want in all; it grows. Whoever may
+// want fewer is given no more than those, so that no answer depends on what
+// others asked for. Pairs that are others for another number
+// (EigenPairs::for_any_count) have an entry of their own.
 //
 // Thread safe.
 class SpectrumCache : public EigenPairSource {
@@ -46,11 +49,13 @@ class SpectrumCache : public EigenPairSource {
       const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
       const ProgressCallback& progress, SpectrumUse& use);
 
-  // Callers for one key wait while one of them computes, and then take what it
-  // found or go on. Where that one is cancelled, another takes over; where it
-  // fails, those who waited get its error, and whoever asks later tries anew. A
-  // caller that is cancelled stops waiting within kPollInterval. Nobody waits
-  // for a stream that is not computing.
+  // Callers for as many pairs of one geometry wait while one of them computes,
+  // and then take what it found or go on. They do not wait for callers for
+  // another number: who wants few would wait for many. Where that one is
+  // cancelled, another takes over; where it fails, those who waited get its
+  // error, and whoever asks later tries anew. A caller that is cancelled stops
+  // waiting within kPollInterval. Nobody waits for a stream that is not
+  // computing.
   std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
                                         uint32_t count) override;
 
@@ -67,7 +72,7 @@ class SpectrumCache : public EigenPairSource {
  private:
   struct Key {
     Digest geometry;
-    uint32_t count;
+    uint32_t count;  // 0 where it may be any
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   struct Flight;
@@ -75,6 +80,10 @@ class SpectrumCache : public EigenPairSource {
   using Result = absl::StatusOr<std::shared_ptr<const EigenPairs>>;
 
   static Key KeyOf(const CanonicalMesh& mesh, uint32_t count);
+  // The key of an entry that has all pairs up to `bound` and one beyond, or
+  // key.count of them. Those for any count will do if `shared`.
+  std::optional<Key> HolderFor(const Key& key, bool shared, double bound)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_);
   // Ends a flight, which all who wait for it see.
   void Land(const Key& key, Flight& flight, Result result);
 

@@ -257,17 +257,21 @@ Eigen::VectorXd Masses(const Eigen::VectorXd& areas) {
 absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
                                 const CancelToken& cancel) {
   const Adjacency adjacency(mesh);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   std::optional<Stencil> stencil = PlainStencil(mesh, adjacency);
   if (!stencil) {
     MARROW_ASSIGN_OR_RETURN(stencil, FlippedStencil(mesh, adjacency, cancel));
   }
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
     stencil->report.nonmanifold_edges += adjacency.EdgeFaces(e).size() > 2;
   for (const Bridge& ends : FindBridges(mesh))
     stencil->edges.push_back({ends, kBridgeWeight});
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   Merge(stencil->edges);
   Laplacian laplacian{Matrix(stencil->edges, mesh.NumVertices()),
                       Masses(stencil->areas), stencil->report};
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   MARROW_RETURN_IF_ERROR(CheckLaplacian(laplacian));
   return laplacian;
 }

@@ -107,31 +107,28 @@ class BandFinder {
   }
 
  private:
-  void FillAnew(double* Z) {
+  absl::Status FillAnew(double* Z) {
     basis_.FillRandomly(Z, ++seed_);
-    factor_.Solve(Z, team_);
+    return factor_.Solve(Z, team_, cancel_);
   }
 
   absl::Status Append(LanczosBasis::Growth& growth) {
-    return basis_.Append([this](double* Z) { FillAnew(Z); }, cancel_, growth);
+    return basis_.Append([this](double* Z) { return FillAnew(Z); }, cancel_,
+                         growth);
   }
 
   // The solutions of a random block.
   absl::Status Start() {
-    double* X = basis_.Block(0);
-    basis_.FillRandomly(X, ++seed_);
-    MARROW_RETURN_IF_ERROR(cancel_.Check());
-    factor_.Solve(X, team_);
+    MARROW_RETURN_IF_ERROR(FillAnew(basis_.Block(0)));
     LanczosBasis::Growth unused;
     return Append(unused);
   }
 
   // Takes the last block of the basis through the operator.
   absl::Status Step() {
-    MARROW_RETURN_IF_ERROR(cancel_.Check());
     double* W = basis_.Block(basis_.num_blocks());
     basis_.Copy(basis_.num_blocks() - 1, W);
-    factor_.Solve(W, team_);
+    MARROW_RETURN_IF_ERROR(factor_.Solve(W, team_, cancel_));
     LanczosBasis::Growth growth;
     MARROW_RETURN_IF_ERROR(Append(growth));
     const Eigen::Index old = T_.rows();
@@ -368,7 +365,7 @@ class BandFinder {
       block.setZero();
       block.leftCols(width) = coefficients.middleCols(begin, width);
       double* Y = basis_.Block(basis_.num_blocks());
-      basis_.Combine(block, {&Y, 1});
+      MARROW_RETURN_IF_ERROR(basis_.Combine(block, {&Y, 1}, cancel_));
       window.vectors.middleCols(begin, kBlock) =
           Eigen::Map<const RowMajorMatrix>(Y, matrix_.n, kBlock);
     }
@@ -400,7 +397,7 @@ class BandFinder {
       Y[i] = basis_.Block(basis_.num_blocks() + i);
     for (int i = 0; i < scratch_blocks; ++i)
       scratch[i] = basis_.Block(basis_.num_blocks() + kTogether + i);
-    basis_.Combine(coefficients, Y);
+    MARROW_RETURN_IF_ERROR(basis_.Combine(coefficients, Y, cancel_));
     for (int b = 0; b < kTogether; b += scratch_blocks) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
       team_.For(std::min(scratch_blocks, kTogether - b), [&](int i) {

@@ -17,8 +17,8 @@
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
+#include "core/spectrum/dense_solver.h"
 #include "core/spectrum/inverse_iteration.h"
-#include "core/spectrum/reference_solver.h"
 #include "core/spectrum/shift_grid.h"
 
 namespace marrow {
@@ -298,10 +298,11 @@ class Certifier {
 };
 
 // A dense solver has them all, so a bound is where the last one wanted ends.
-CertifiedSpectrum CertifyDensely(const Eigen::SparseMatrix<double>& A,
-                                 const Laplacian& laplacian, int count) {
+absl::StatusOr<CertifiedSpectrum> CertifyDensely(
+    const Eigen::SparseMatrix<double>& A, const Laplacian& laplacian, int count,
+    const CancelToken& cancel) {
   const int n = static_cast<int>(A.rows());
-  const MatrixPairs all = SolveDensely(A, n);
+  MARROW_ASSIGN_OR_RETURN(const MatrixPairs all, SolveDensely(A, n, cancel));
   CertifiedSpectrum spectrum;
   spectrum.eigenvalues = all.values.head(count);
   spectrum.eigenvalues[0] = 0;
@@ -364,7 +365,7 @@ absl::StatusOr<CertifiedSpectrum> CertifySpectrum(
   try {
     absl::StatusOr<CertifiedSpectrum> spectrum =
         n <= kDenseVertices || 2 * count > n
-            ? CertifyDensely(A, laplacian, count)
+            ? CertifyDensely(A, laplacian, count, cancel)
             : CertifySparsely(mesh, pairs, A, laplacian, count, residual,
                               cancel, report);
     if (!spectrum.ok()) return spectrum.status();

@@ -30,6 +30,14 @@ class WholeStream : public EigenPairStream {
 
 }  // namespace
 
+EigenPairs FirstPairs(const EigenPairs& pairs, uint32_t count) {
+  return {.eigenvalues = pairs.eigenvalues.head(count),
+          .eigenvectors = pairs.eigenvectors.leftCols(count),
+          .area = pairs.area,
+          .complete = false,
+          .for_any_count = pairs.for_any_count};
+}
+
 std::unique_ptr<EigenPairStream> EigenPairSource::Open(
     const CanonicalMesh& mesh, uint32_t count) {
   return std::make_unique<WholeStream>(*this, mesh, count);

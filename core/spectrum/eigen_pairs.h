@@ -33,6 +33,10 @@ struct EigenPairs {
   // Whether these are all the pairs of the mesh, so that no truncation of a
   // diffusion map can want more.
   bool complete = false;
+  // Whether these are, to the byte, the first pairs of whoever asks for more,
+  // and fewer of them those of whoever asks for fewer. So it is but where very
+  // many eigenvalues are equal or most pairs of a mesh are wanted.
+  bool for_any_count = true;
 
   // Number of pairs, the constant one counted.
   uint32_t NumPairs() const {
@@ -43,6 +47,9 @@ struct EigenPairs {
            sizeof(float) * eigenvectors.size();
   }
 };
+
+// The first `count` of them. REQUIRES: count < pairs.NumPairs().
+EigenPairs FirstPairs(const EigenPairs& pairs, uint32_t count);
 
 // Called with a share of the work, 0 to 1, never falling, on the thread that
 // computes.
@@ -72,6 +79,12 @@ class EigenPairSource {
   virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> Get(
       const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
       const ProgressCallback& progress) = 0;
+
+  // Whether what it gives for `count` pairs begins as what it gives for others,
+  // as far as EigenPairs::for_any_count says so of both.
+  virtual bool GivesSharedPairs(const CanonicalMesh&, uint32_t) const {
+    return true;
+  }
 
   // What Get() answers, piece by piece for those sources that work so; the
   // others give all of it at once. `mesh` and this must outlive the stream.

@@ -25,21 +25,23 @@ absl::Status SolveAll(const SupernodalFactor& factor, const RowMajorMatrix& X,
   Team alone(1);
   Eigen::Map<RowMajorMatrix> block(buffer.data(), X.rows(), kBlock);
   for (Eigen::Index begin = 0; begin < X.cols(); begin += kBlock) {
-    MARROW_RETURN_IF_ERROR(cancel.Check());
     block = X.middleCols(begin, kBlock);
-    factor.Solve(block.data(), alone);
+    MARROW_RETURN_IF_ERROR(factor.Solve(block.data(), alone, cancel));
     Y.middleCols(begin, kBlock) = block;
   }
   return absl::OkStatus();
 }
 
 // U'V.
-Eigen::MatrixXd Project(const RowMajorMatrix& U, const RowMajorMatrix& V) {
+absl::StatusOr<Eigen::MatrixXd> Project(const RowMajorMatrix& U,
+                                        const RowMajorMatrix& V,
+                                        const CancelToken& cancel) {
   const int width = static_cast<int>(U.cols());
   RowMajorMatrix product = RowMajorMatrix::Zero(width, width);
   for (Eigen::Index begin = 0; begin < U.rows(); begin += kChunk) {
     const int rows =
         static_cast<int>(std::min<Eigen::Index>(kChunk, U.rows() - begin));
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     Kernels().multiply_add(
         width, width, rows, {U.data() + begin * width, 1, width},
         V.data() + begin * width, width, product.data(), width);
@@ -48,17 +50,19 @@ Eigen::MatrixXd Project(const RowMajorMatrix& U, const RowMajorMatrix& V) {
 }
 
 // X = Y B.
-void Combine(const RowMajorMatrix& Y, const RowMajorMatrix& B,
-             RowMajorMatrix& X) {
+absl::Status Combine(const RowMajorMatrix& Y, const RowMajorMatrix& B,
+                     RowMajorMatrix& X, const CancelToken& cancel) {
   const int width = static_cast<int>(Y.cols());
   X.setZero();
   for (Eigen::Index begin = 0; begin < Y.rows(); begin += kChunk) {
     const int rows =
         static_cast<int>(std::min<Eigen::Index>(kChunk, Y.rows() - begin));
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     Kernels().multiply_add(rows, width, width,
                            {Y.data() + begin * width, width, 1}, B.data(),
                            width, X.data() + begin * width, width);
   }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -69,10 +73,10 @@ absl::Status IterateInversely(const SupernodalFactor& factor, Window& window,
   const Eigen::Index count = window.values.size();
   RowMajorMatrix Y(X.rows(), X.cols());
   MARROW_RETURN_IF_ERROR(SolveAll(factor, X, Y, cancel));
-  const Eigen::MatrixXd gram = Project(Y, Y).topLeftCorner(count, count);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  const Eigen::MatrixXd product = Project(Y, X).topLeftCorner(count, count);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
+  MARROW_ASSIGN_OR_RETURN(Eigen::MatrixXd gram, Project(Y, Y, cancel));
+  gram.conservativeResize(count, count);
+  MARROW_ASSIGN_OR_RETURN(Eigen::MatrixXd product, Project(Y, X, cancel));
+  product.conservativeResize(count, count);
 
   const Eigen::VectorXd scale = gram.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd H = scale.asDiagonal() *
@@ -89,8 +93,7 @@ absl::Status IterateInversely(const SupernodalFactor& factor, Window& window,
   window.values = ritz.eigenvalues().array() + factor.shift();
   RowMajorMatrix B = RowMajorMatrix::Zero(X.cols(), X.cols());
   B.topLeftCorner(count, count) = scale.asDiagonal() * ritz.eigenvectors();
-  Combine(Y, B, X);
-  return absl::OkStatus();
+  return Combine(Y, B, X, cancel);
 }
 
 }  // namespace marrow

@@ -30,11 +30,12 @@ int PartBegin(int n, int part) {
   return static_cast<int>(static_cast<int64_t>(n) * part / kParts);
 }
 
-// body(rows, offset of the first of them in a block).
+// body(rows, offset of the first of them in a block), until cancelled.
 template <typename Body>
-void ForChunks(int n, int part, const Body& body) {
+void ForChunks(int n, int part, const CancelToken& cancel, const Body& body) {
   const int end = PartBegin(n, part + 1);
-  for (int begin = PartBegin(n, part); begin < end; begin += kChunk)
+  for (int begin = PartBegin(n, part); begin < end && !cancel.IsCancelled();
+       begin += kChunk)
     body(std::min(kChunk, end - begin), static_cast<size_t>(begin) * kBlock);
 }
 
@@ -64,18 +65,19 @@ void LanczosBasis::FillRandomly(double* W, uint64_t seed) const {
 
 void LanczosBasis::Copy(int index, double* W) const {
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, [&](int rows, size_t at) {
+    ForChunks(n_, part, CancelToken(), [&](int rows, size_t at) {
       std::memcpy(W + at, blocks_[index].data() + at,
                   sizeof(double) * rows * kBlock);
     });
   });
 }
 
-RowMajorMatrix LanczosBasis::Project(int first, const double* W) const {
+RowMajorMatrix LanczosBasis::Project(int first, const double* W,
+                                     const CancelToken& cancel) const {
   std::vector<RowMajorMatrix> sums(kParts,
                                    RowMajorMatrix::Zero(dimension(), kBlock));
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, [&](int rows, size_t at) {
+    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
       for (int j = first; j < num_blocks_; ++j)
         kernels_.multiply_add(
             kBlock, kBlock, rows, {blocks_[j].data() + at, 1, kBlock}, W + at,
@@ -86,11 +88,12 @@ RowMajorMatrix LanczosBasis::Project(int first, const double* W) const {
 }
 
 RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
-                                             double* W) const {
+                                             double* W,
+                                             const CancelToken& cancel) const {
   std::vector<RowMajorMatrix> sums(kParts,
                                    RowMajorMatrix::Zero(kBlock, kBlock));
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, [&](int rows, size_t at) {
+    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
       for (int j = first; j < num_blocks_; ++j)
         kernels_.multiply_subtract(
             rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
@@ -105,7 +108,7 @@ RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
 void LanczosBasis::MultiplyInPlace(const RowMajorMatrix& B, double* W) const {
   team_.For(kParts, [&](int part) {
     alignas(64) double copy[kChunk * kBlock];
-    ForChunks(n_, part, [&](int rows, size_t at) {
+    ForChunks(n_, part, CancelToken(), [&](int rows, size_t at) {
       const size_t bytes = sizeof(double) * rows * kBlock;
       std::memcpy(copy, W + at, bytes);
       std::memset(W + at, 0, bytes);
@@ -124,11 +127,12 @@ void LanczosBasis::ReplaceColumns(const std::vector<bool>& which,
   }
 }
 
-void LanczosBasis::Combine(const RowMajorMatrix& coefficients,
-                           std::span<double* const> Y) const {
+absl::Status LanczosBasis::Combine(const RowMajorMatrix& coefficients,
+                                   std::span<double* const> Y,
+                                   const CancelToken& cancel) const {
   const int ldb = static_cast<int>(coefficients.cols());
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, [&](int rows, size_t at) {
+    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
       for (double* out : Y)
         std::memset(out + at, 0, sizeof(double) * rows * kBlock);
       for (int j = 0; j < num_blocks_; ++j)
@@ -139,6 +143,7 @@ void LanczosBasis::Combine(const RowMajorMatrix& coefficients,
               Y[b] + at, kBlock);
     });
   });
+  return cancel.Check();
 }
 
 Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,

@@ -42,21 +42,25 @@ class LanczosBasis {
   };
   // Makes of W = Block(num_blocks()) the next block of the basis. Directions
   // that W does not have are filled by `fill(Z)`, which writes a block of
-  // vectors to be used instead. Errors: CANCELLED.
+  // vectors to be used instead and returns a status. Errors: CANCELLED; those
+  // of `fill`.
   template <typename Fill>
   absl::Status Append(const Fill& fill, const CancelToken& cancel,
                       Growth& growth);
 
-  // Y = V * coefficients, a block for every kBlock columns of these.
-  void Combine(const RowMajorMatrix& coefficients,
-               std::span<double* const> Y) const;
+  // Y = V * coefficients, a block for every kBlock columns of these. Errors:
+  // CANCELLED.
+  absl::Status Combine(const RowMajorMatrix& coefficients,
+                       std::span<double* const> Y,
+                       const CancelToken& cancel) const;
 
  private:
   // V'W, and W -= V C and then W'W, for V the blocks from `first` on; C has
-  // rows for all blocks.
-  RowMajorMatrix Project(int first, const double* W) const;
-  RowMajorMatrix SubtractAndGram(int first, const RowMajorMatrix& C,
-                                 double* W) const;
+  // rows for all blocks. Anything, once cancelled.
+  RowMajorMatrix Project(int first, const double* W,
+                         const CancelToken& cancel) const;
+  RowMajorMatrix SubtractAndGram(int first, const RowMajorMatrix& C, double* W,
+                                 const CancelToken& cancel) const;
   void MultiplyInPlace(const RowMajorMatrix& B, double* W) const;
   void ReplaceColumns(const std::vector<bool>& which, const double* Z,
                       double* W) const;
@@ -96,10 +100,9 @@ absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
   // fill.
   int passes = 2, first = 0;
   for (int pass = 0; pass < passes; ++pass) {
+    const RowMajorMatrix C = Project(first, W, cancel);
+    const RowMajorMatrix gram = SubtractAndGram(first, C, W, cancel);
     if (cancel.IsCancelled()) return cancel.Check();
-    const RowMajorMatrix C = Project(first, W);
-    if (cancel.IsCancelled()) return cancel.Check();
-    const RowMajorMatrix gram = SubtractAndGram(first, C, W);
     const Orthonormaliser q = MakeOrthonormaliser(
         gram, C.colwise().squaredNorm().transpose() + gram.diagonal());
     growth.projection += C * growth.remainder;
@@ -110,7 +113,7 @@ absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
     passes = 4;
     first = 0;
     double* Z = Block(num_blocks_ + 1);
-    fill(Z);
+    if (absl::Status status = fill(Z); !status.ok()) return status;
     ReplaceColumns(q.missing, Z, W);
   }
   ++num_blocks_;

@@ -69,7 +69,7 @@ class Dissection {
   double At(int v, int axis) const { return positions_[3L * v + axis]; }
 
   // Reorders the set as low half, high half, separator. False where every
-  // vertex would be in the separator or in one half.
+  // vertex would be in the separator or in one half, or once cancelled.
   bool Cut(int* begin, int* end, int*& middle, int*& separator) {
     const int size = static_cast<int>(end - begin);
     const std::array<int, 3> axes = AxesByExtent(begin, end);
@@ -78,6 +78,7 @@ class Dissection {
       SplitAtMedian(begin, end);
     } else {
       SplitBest(begin, end, axes);
+      if (cancel_.IsCancelled()) return false;
     }
     MoveToSeparator(begin, end);
     return Arrange(begin, end, middle, separator);
@@ -207,6 +208,7 @@ class Dissection {
     int best_way = -1;
     Choice best{0, HUGE_VAL};
     for (int way : {axes[0], axes[1], axes[2], 3}) {
+      if (cancel_.IsCancelled()) break;
       SetKeys(begin, end, way);
       for (int* v = begin; v < end; ++v) part_[*v] = kLow;
       const Choice choice = BestThreshold(begin, end);

@@ -6,7 +6,6 @@
 
 #include <Spectra/SymEigsShiftSolver.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <exception>
@@ -102,13 +101,6 @@ absl::StatusOr<MatrixPairs> SolveByReference(
   } catch (const std::exception& e) {
     return absl::InternalError(absl::StrCat("the eigensolver: ", e.what()));
   }
-}
-
-MatrixPairs SolveDensely(const Eigen::SparseMatrix<double>& matrix, int pairs) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{
-      Eigen::MatrixXd(matrix)};
-  return {solver.eigenvalues().head(pairs),
-          solver.eigenvectors().leftCols(pairs)};
 }
 
 }  // namespace marrow

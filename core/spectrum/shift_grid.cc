@@ -122,6 +122,7 @@ absl::Status ShiftGrid::Plan(SupernodalFactor& factor, Team& team,
   band = PlannedBand();
   band.shift = factor.shift();
   band.below_shift = factor.negative_pivots();
+  band.of_cluster = cluster_end > 0;
   band.request = common_;
   band.request.below = band.below_shift - covered_;
   band.request.all_below = covered_ == 0;

@@ -18,6 +18,7 @@ struct PlannedBand {
   double shift = 0;
   int below_shift = 0;  // eigenvalues of the matrix below the shift
   BandRequest request;
+  bool of_cluster = false;  // more equal eigenvalues than a usual band has
 };
 
 // Plans bands, ascending: the first is small, for those who need few pairs, and

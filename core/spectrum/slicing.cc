@@ -16,6 +16,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <new>
 #include <thread>
@@ -89,7 +90,8 @@ class Slicer : public SpectrumSlicer {
     std::vector<SpectrumPart> parts;
     try {
       Report report(*this, wanted, progress);
-      while (!Has(wanted)) {
+      while (!Has(wanted) && (status_.ok() || parts.empty())) {
+        MARROW_RETURN_IF_ERROR(status_);
         MARROW_RETURN_IF_ERROR(FindMore(wanted, cancel, report));
         while (certified_ < bands_.size()) parts.push_back(NextPart());
       }
@@ -138,7 +140,8 @@ class Slicer : public SpectrumSlicer {
            (NumPairs() > 0 && bands_.back()->band.values.back() > wanted.bound);
   }
 
-  // At least one band more.
+  // At least one band more, or an error in status_. Of the bands at work when
+  // one fails, those before it are kept: which do not depends on the threads.
   absl::Status FindMore(const PairsWanted& wanted, const CancelToken& cancel,
                         Report& report) {
     const size_t before = bands_.size();
@@ -148,7 +151,7 @@ class Slicer : public SpectrumSlicer {
     };
     const Task task{enough, cancel};
     Desk desk(matrix_, options_.threads / workers_);
-    status_ = absl::OkStatus();
+    sound_ = std::numeric_limits<size_t>::max();
     finished_ = 0;
     std::vector<std::thread> others;
     for (int t = 1; t < workers_; ++t)
@@ -156,10 +159,16 @@ class Slicer : public SpectrumSlicer {
     Work(task, desk, [&] { report(); });
     WaitForOthers(report);
     for (std::thread& other : others) other.join();
-    MARROW_RETURN_IF_ERROR(status_);
+    if (status_.code() != absl::StatusCode::kInternal)
+      MARROW_RETURN_IF_ERROR(status_);
+    bands_.resize(std::min(sound_, bands_.size()));
     desk.workspace = {};
     for (size_t k = certified_; k < bands_.size(); ++k)
-      MARROW_RETURN_IF_ERROR(Certify(k, desk, cancel));
+      if (absl::Status status = Certify(k, desk, cancel); !status.ok()) {
+        if (status.code() != absl::StatusCode::kInternal) return status;
+        Fail(std::move(status), k);
+        bands_.resize(k);
+      }
     return absl::OkStatus();
   }
 
@@ -173,7 +182,7 @@ class Slicer : public SpectrumSlicer {
       Desk desk(matrix_, 1);
       Work(task, desk, [] {});
     } catch (const std::bad_alloc&) {
-      Fail(OutOfMemory(matrix_.n));
+      Fail(OutOfMemory(matrix_.n), 0);
     }
     absl::MutexLock lock(&mu_);
     ++finished_;
@@ -184,22 +193,27 @@ class Slicer : public SpectrumSlicer {
       while (WorkOnOne(task, desk, report)) {
       }
     } catch (const std::bad_alloc&) {
-      Fail(OutOfMemory(matrix_.n));
+      Fail(OutOfMemory(matrix_.n), 0);
     }
   }
 
   bool WorkOnOne(const Task& task, Desk& desk, const StepCallback& report) {
     FoundBand* found;
+    size_t index;
     {
       absl::MutexLock lock(&mu_);
       if (!status_.ok() || task.enough()) return false;
+      index = bands_.size();
       bands_.push_back(std::make_unique<FoundBand>());
       found = bands_.back().get();
       // Each shift depends on the count at the one before, so this is done by
       // one thread at a time.
-      status_.Update(
-          grid_.Plan(desk.factor, desk.team, task.cancel, found->plan));
-      if (!status_.ok()) return false;
+      if (absl::Status status =
+              grid_.Plan(desk.factor, desk.team, task.cancel, found->plan);
+          !status.ok()) {
+        NoteFailure(std::move(status), index);
+        return false;
+      }
     }
     found->counts.push_back({found->plan.shift, found->plan.below_shift});
     absl::StatusOr<Band> band =
@@ -209,16 +223,28 @@ class Slicer : public SpectrumSlicer {
                    report();
                  });
     if (!band.ok()) {
-      Fail(band.status());
+      Fail(band.status(), index);
       return false;
     }
     found->band = *std::move(band);
     return true;
   }
 
-  void Fail(absl::Status status) {
+  void Fail(absl::Status status, size_t band) {
     absl::MutexLock lock(&mu_);
-    status_.Update(std::move(status));
+    NoteFailure(std::move(status), band);
+  }
+
+  // The error of the first band that fails counts, but what is no matter of a
+  // band goes before.
+  void NoteFailure(absl::Status status, size_t band)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
+    const bool was_internal =
+        status_.ok() || status_.code() == absl::StatusCode::kInternal;
+    const bool is_internal = status.code() == absl::StatusCode::kInternal;
+    if (was_internal && (!is_internal || band < sound_))
+      status_ = std::move(status);
+    sound_ = std::min(sound_, band);
   }
 
   void WaitForOthers(Report& report) {
@@ -281,6 +307,7 @@ class Slicer : public SpectrumSlicer {
     SpectrumPart part;
     part.first = begin - found.first();
     part.end = static_cast<int>(found.band.values.size());
+    part.of_cluster = found.plan.of_cluster;
     part.counts = found.counts;
     part.band = std::move(found.band);
     found.band.values = part.band.values;
@@ -296,6 +323,7 @@ class Slicer : public SpectrumSlicer {
   size_t certified_ =
       0;  // bands that were handed on, without their vectors now
   absl::Status status_;
+  size_t sound_ = 0;  // bands before the first that failed
   int finished_ = 0;
   std::atomic<double> done_{0};
 };

@@ -42,6 +42,9 @@ struct SpectrumPart {
   Band band;
   int first = 0;
   int end = 0;
+  // Whether it is of more equal eigenvalues than a usual band has pairs: its
+  // end and its vectors may depend on how many pairs may be asked for.
+  bool of_cluster = false;
   // Made inside the band and, beyond the last pair that was found, after it.
   std::vector<InertiaCount> counts;
 };
@@ -63,13 +66,14 @@ class SpectrumSlicer {
       int most_pairs, const SlicingOptions& options, const CancelToken& cancel);
   virtual ~SpectrumSlicer() = default;
 
-  // The parts that follow those found before, until what is wanted is there;
-  // none if it was. That no pair is missing or twice is certified by the
-  // inertia at every shift and beyond the last pair. The same bytes at any
-  // number of threads and in whatever steps they are asked for. Errors:
-  // CANCELLED; RESOURCE_EXHAUSTED; INTERNAL where a certificate fails for good.
-  // After an error this is not to be used. REQUIRES: wanted.pairs <=
-  // most_pairs.
+  // The parts that follow those found before, until what is wanted is there or
+  // the next cannot be found: then the next call has the error, unless it is
+  // one of the first two below. None if what is wanted was there. That no pair
+  // is missing or twice is certified by the inertia at every shift and beyond
+  // the last pair. The same bytes at any number of threads and in whatever
+  // steps they are asked for. Errors: CANCELLED; RESOURCE_EXHAUSTED; INTERNAL
+  // where a certificate fails for good. After an error this is not to be used
+  // any more. REQUIRES: wanted.pairs <= most_pairs.
   virtual absl::StatusOr<std::vector<SpectrumPart>> Find(
       const PairsWanted& wanted, const CancelToken& cancel,
       const ShareCallback& progress) = 0;

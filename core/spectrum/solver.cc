@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
+#include "core/spectrum/dense_solver.h"
 #include "core/spectrum/reference_solver.h"
 #include "core/spectrum/slicing.h"
 #include "core/spectrum/team.h"
@@ -38,6 +39,7 @@ absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
                                              const CancelToken& cancel) {
   MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
                           BuildLaplacian(mesh, cancel));
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   SymmetricProblem problem;
   problem.inverse_sqrt_mass = laplacian.M.cwiseSqrt().cwiseInverse();
   problem.A = problem.inverse_sqrt_mass.asDiagonal() * laplacian.L *
@@ -117,8 +119,15 @@ bool IsDense(int n, int pairs) {
   return n <= kDenseVertices || pairs > kSlicedShare * n;
 }
 
-MatrixPairs SolveDense(const SymmetricProblem& problem, int pairs) {
-  MatrixPairs raw = SolveDensely(problem.A, pairs);
+// Whether other numbers of pairs are solved for in the same way.
+bool IsForAnyCount(int n, int pairs) {
+  return n <= kDenseVertices || !IsDense(n, pairs);
+}
+
+absl::StatusOr<MatrixPairs> SolveDense(const SymmetricProblem& problem,
+                                       int pairs, const CancelToken& cancel) {
+  MARROW_ASSIGN_OR_RETURN(MatrixPairs raw,
+                          SolveDensely(problem.A, pairs, cancel));
   RemoveConstant(problem.inverse_sqrt_mass, raw);
   return raw;
 }
@@ -135,7 +144,7 @@ class SolverStream : public EigenPairStream {
       double bound, const CancelToken& cancel,
       const ProgressCallback& progress) override {
     MARROW_RETURN_IF_ERROR(cancel.Check());
-    if (!Reaches(bound)) {
+    if (pairs_ == nullptr || !Reaches(*pairs_, bound)) {
       MARROW_RETURN_IF_ERROR(Prepare(cancel));
       MARROW_RETURN_IF_ERROR(Extend(bound, cancel, progress));
     }
@@ -144,10 +153,10 @@ class SolverStream : public EigenPairStream {
   }
 
  private:
-  bool Reaches(double bound) const {
-    if (pairs_ == nullptr) return false;
-    return static_cast<int>(pairs_->NumPairs()) == most_ ||
-           pairs_->eigenvalues[pairs_->NumPairs() - 1] > bound;
+  bool Reaches(const EigenPairs& pairs, double bound) const {
+    const int there = static_cast<int>(pairs.NumPairs());
+    return there == most_ ||
+           (there > 0 && pairs.eigenvalues[there - 1] > bound);
   }
 
   absl::Status Prepare(const CancelToken& cancel) {
@@ -167,13 +176,13 @@ class SolverStream : public EigenPairStream {
                       const ProgressCallback& progress) {
     auto pairs = std::make_shared<EigenPairs>();
     pairs->area = mesh_.report.area;
-    if (pairs_ != nullptr) {
-      pairs->eigenvalues = pairs_->eigenvalues;
-      pairs->eigenvectors = pairs_->eigenvectors;
-    }
+    if (pairs_ != nullptr) *pairs = *pairs_;
     const Eigen::Index before = pairs->eigenvalues.size();
     if (slicer_ == nullptr) {
-      Replace(SolveDense(problem_, most_), *pairs);
+      MARROW_ASSIGN_OR_RETURN(const MatrixPairs raw,
+                              SolveDense(problem_, most_, cancel));
+      Replace(raw, *pairs);
+      pairs->for_any_count = IsForAnyCount(problem_.A.rows(), most_);
     } else {
       MARROW_RETURN_IF_ERROR(Slice(bound, cancel, progress, *pairs));
     }
@@ -189,19 +198,28 @@ class SolverStream : public EigenPairStream {
     const auto report = [&](double share) {
       if (progress) progress(kAnalysisShare + (1 - kAnalysisShare) * share);
     };
-    auto parts = slicer_->Find({most_, bound}, cancel, report);
-    if (parts.ok()) {
+    while (!Reaches(pairs, bound)) {
+      auto parts = slicer_->Find({most_, bound}, cancel, report);
+      if (!parts.ok()) return TakeReference(parts.status(), cancel, pairs);
+      for (const SpectrumPart& part : *parts)
+        pairs.for_any_count &= !part.of_cluster;
       Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,
              most_, pairs.eigenvalues, pairs.eigenvectors);
-      return absl::OkStatus();
     }
-    if (parts.status().code() != absl::StatusCode::kInternal ||
+    return absl::OkStatus();
+  }
+
+  // The way out of an error, where there is one.
+  absl::Status TakeReference(const absl::Status& status,
+                             const CancelToken& cancel, EigenPairs& pairs) {
+    if (status.code() != absl::StatusCode::kInternal ||
         problem_.inverse_sqrt_mass.size() > kReferenceVertices)
-      return parts.status();
+      return status;
     MARROW_ASSIGN_OR_RETURN(
         const MatrixPairs raw,
         SolveByReference(problem_.A, most_, cancel, [](double) {}));
     Replace(raw, pairs);
+    pairs.for_any_count = false;
     return absl::OkStatus();
   }
 
@@ -238,6 +256,12 @@ absl::StatusOr<std::shared_ptr<const EigenPairs>> SolverEigenPairSource::Get(
 std::unique_ptr<EigenPairStream> SolverEigenPairSource::Open(
     const CanonicalMesh& mesh, uint32_t count) {
   return std::make_unique<SolverStream>(mesh, count, tolerance_);
+}
+
+bool SolverEigenPairSource::GivesSharedPairs(const CanonicalMesh& mesh,
+                                             uint32_t count) const {
+  const int n = static_cast<int>(mesh.mesh.NumVertices());
+  return IsForAnyCount(n, std::min(static_cast<int>(count) + 1, n));
 }
 
 double PredictSolverSeconds(uint64_t vertices, uint32_t count) {

@@ -14,7 +14,7 @@
 namespace marrow {
 
 // Changes whenever the same mesh may give other bytes.
-inline constexpr char kSolverRevision[] = "slicing/3";
+inline constexpr char kSolverRevision[] = "slicing/4";
 
 // What the residual ||L phi - lambda M phi|| of a pair, in the M^-1 norm, may
 // be in units of max(lambda, lambda_1). Segmentations are the same at the first
@@ -35,6 +35,8 @@ class SolverEigenPairSource : public EigenPairSource {
   // Solves a band at a time.
   std::unique_ptr<EigenPairStream> Open(const CanonicalMesh& mesh,
                                         uint32_t count) override;
+  bool GivesSharedPairs(const CanonicalMesh& mesh,
+                        uint32_t count) const override;
 
  private:
   const double tolerance_;

@@ -252,7 +252,8 @@ void SupernodalFactor::SolveUp(const Supernode& node, double* X) const {
 
 // Branches write what they subtract from the top beside it; it is added in
 // their order.
-void SupernodalFactor::Solve(double* X, Team& team) const {
+absl::Status SupernodalFactor::Solve(double* X, Team& team,
+                                     const CancelToken& cancel) const {
   const auto& nodes = structure_.supernodes;
   const auto& branches = structure_.branches;
   const size_t top_begin = static_cast<size_t>(structure_.top_column) * kBlock;
@@ -262,19 +263,25 @@ void SupernodalFactor::Solve(double* X, Team& team) const {
   const int count = static_cast<int>(branches.size());
   team.For(count, [&](int b) {
     tops[b].assign(top_size, 0.0);
-    for (int k = branches[b].begin; k < branches[b].end; ++k)
+    for (int k = branches[b].begin;
+         k < branches[b].end && !cancel.IsCancelled(); ++k)
       SolveDown(nodes[k], X, tops[b].data() - top_begin);
   });
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   for (const std::vector<double>& top : tops)
     for (size_t i = 0; i < top_size; ++i) X[top_begin + i] += top[i];
   const int num_nodes = static_cast<int>(nodes.size());
-  for (int k = structure_.first_top; k < num_nodes; ++k)
+  for (int k = structure_.first_top; k < num_nodes && !cancel.IsCancelled();
+       ++k)
     SolveDown(nodes[k], X, X);
-  for (int k = num_nodes; k-- > structure_.first_top;) SolveUp(nodes[k], X);
+  for (int k = num_nodes; k-- > structure_.first_top && !cancel.IsCancelled();)
+    SolveUp(nodes[k], X);
   team.For(count, [&](int b) {
-    for (int k = branches[b].end; k-- > branches[b].begin;)
+    for (int k = branches[b].end;
+         k-- > branches[b].begin && !cancel.IsCancelled();)
       SolveUp(nodes[k], X);
   });
+  return cancel.Check();
 }
 
 }  // namespace marrow

@@ -30,8 +30,9 @@ class SupernodalFactor {
   // By Sylvester's law of inertia, how many eigenvalues of A are below shift().
   int negative_pivots() const { return negative_pivots_; }
 
-  // X = (A - shift I)^-1 X, a block of n rows in the structure's order.
-  void Solve(double* X, Team& team) const;
+  // X = (A - shift I)^-1 X, a block of n rows in the structure's order. Errors:
+  // CANCELLED, and X is of no use then.
+  absl::Status Solve(double* X, Team& team, const CancelToken& cancel) const;
 
  private:
   using Supernode = SupernodalStructure::Supernode;

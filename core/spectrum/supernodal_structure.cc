@@ -35,12 +35,14 @@ struct LowerGraph {
   std::vector<int> neighbours;
 };
 
-Graph GraphOf(const Eigen::SparseMatrix<double>& matrix) {
+absl::StatusOr<Graph> GraphOf(const Eigen::SparseMatrix<double>& matrix,
+                              const CancelToken& cancel) {
   Graph graph;
   const int n = static_cast<int>(matrix.rows());
   graph.start.assign(n + 1, 0);
   graph.neighbours.reserve(matrix.nonZeros());
   for (int v = 0; v < n; ++v) {
+    if (v % kCheckEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, v); it; ++it)
       if (it.row() != v) graph.neighbours.push_back(it.row());
     graph.start[v + 1] = static_cast<int>(graph.neighbours.size());
@@ -48,7 +50,9 @@ Graph GraphOf(const Eigen::SparseMatrix<double>& matrix) {
   return graph;
 }
 
-LowerGraph LowerGraphOf(const Graph& graph, const std::vector<int>& order) {
+absl::StatusOr<LowerGraph> LowerGraphOf(const Graph& graph,
+                                        const std::vector<int>& order,
+                                        const CancelToken& cancel) {
   const int n = graph.NumVertices();
   std::vector<int> position(n);
   for (int i = 0; i < n; ++i) position[order[i]] = i;
@@ -56,6 +60,7 @@ LowerGraph LowerGraphOf(const Graph& graph, const std::vector<int>& order) {
   lower.start.assign(n + 1, 0);
   lower.neighbours.reserve(graph.neighbours.size() / 2);
   for (int i = 0; i < n; ++i) {
+    if (i % kCheckEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     const int v = order[i];
     for (int e = graph.start[v]; e < graph.start[v + 1]; ++e)
       if (position[graph.neighbours[e]] < i)
@@ -274,19 +279,22 @@ int PanelColumn(const Structure& s, const Structure::Supernode& node, int row,
   return node.OwnWidth() + cursor;
 }
 
-void FindRelative(Structure& s) {
+absl::Status FindRelative(Structure& s, const CancelToken& cancel) {
   for (const Structure::Supernode& node : s.supernodes) {
+    if (cancel.IsCancelled()) return cancel.Check();
     if (node.parent < 0) continue;
     int cursor = 0;
     for (int i = 0; i < node.num_rows; ++i)
       s.relative[node.rows + i] = PanelColumn(s, s.supernodes[node.parent],
                                               s.rows[node.rows + i], cursor);
   }
+  return absl::OkStatus();
 }
 
-void FindOffsets(Structure& s) {
+absl::Status FindOffsets(Structure& s, const CancelToken& cancel) {
   s.offsets.resize(s.columns.size());
-  for (const Structure::Supernode& node : s.supernodes)
+  for (const Structure::Supernode& node : s.supernodes) {
+    if (cancel.IsCancelled()) return cancel.Check();
     for (int i = node.first; i < node.first + node.width; ++i) {
       int cursor = 0;
       for (size_t e = s.row_start[i]; e < s.row_start[i + 1]; ++e)
@@ -294,15 +302,19 @@ void FindOffsets(Structure& s) {
             static_cast<size_t>(i - node.first) * node.PanelStride() +
             PanelColumn(s, node, s.columns[e], cursor));
     }
+  }
+  return absl::OkStatus();
 }
 
 // The upper triangle by rows in the new order.
-void CopyEntries(const Eigen::SparseMatrix<double>& matrix, Structure& s) {
+absl::Status CopyEntries(const Eigen::SparseMatrix<double>& matrix,
+                         Structure& s, const CancelToken& cancel) {
   std::vector<int> position(s.n);
   for (int i = 0; i < s.n; ++i) position[s.order[i]] = i;
   s.row_start.assign(s.n + 1, 0);
   std::vector<std::pair<int, double>> row;
   for (int i = 0; i < s.n; ++i) {
+    if (i % kCheckEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     row.clear();
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, s.order[i]); it;
          ++it)
@@ -315,6 +327,7 @@ void CopyEntries(const Eigen::SparseMatrix<double>& matrix, Structure& s) {
     }
     s.row_start[i + 1] = s.columns.size();
   }
+  return absl::OkStatus();
 }
 
 // The run that each run's update goes to, or -1.
@@ -390,29 +403,28 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
     size_t max_factor_bytes, int threads, const CancelToken& cancel) {
   SupernodalStructure s;
   s.n = static_cast<int>(matrix.rows());
-  const Graph graph = GraphOf(matrix);
+  MARROW_ASSIGN_OR_RETURN(const Graph graph, GraphOf(matrix, cancel));
   MARROW_ASSIGN_OR_RETURN(s.order,
                           DissectionOrder(graph, positions, threads, cancel));
   // The tree keeps its shape when its vertices are renumbered by postorder.
-  const std::vector<int> postorder =
-      Postorder(EliminationTree(LowerGraphOf(graph, s.order)));
+  MARROW_ASSIGN_OR_RETURN(LowerGraph lower,
+                          LowerGraphOf(graph, s.order, cancel));
+  const std::vector<int> postorder = Postorder(EliminationTree(lower));
   std::vector<int> reordered(s.n);
   for (int i = 0; i < s.n; ++i) reordered[i] = s.order[postorder[i]];
   s.order = std::move(reordered);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  const LowerGraph lower = LowerGraphOf(graph, s.order);
+  MARROW_ASSIGN_OR_RETURN(lower, LowerGraphOf(graph, s.order, cancel));
   const std::vector<int> parent = EliminationTree(lower);
   MARROW_ASSIGN_OR_RETURN(
       const std::vector<int> counts,
       ColumnCounts(lower, parent, max_factor_bytes / sizeof(double), cancel));
   std::vector<Run> runs = JoinChains(LeafRuns(parent, counts), parent);
   if (s.n >= kBranchedRows) MoveBranches(parent, runs, s);
-  CopyEntries(matrix, s);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
+  MARROW_RETURN_IF_ERROR(CopyEntries(matrix, s, cancel));
   PlaceSupernodes(runs, s);
   MARROW_RETURN_IF_ERROR(FindRows(s, cancel));
-  FindRelative(s);
-  FindOffsets(s);
+  MARROW_RETURN_IF_ERROR(FindRelative(s, cancel));
+  MARROW_RETURN_IF_ERROR(FindOffsets(s, cancel));
   return s;
 }
 

@@ -190,6 +190,12 @@ TEST_F(MeshStoreServiceTest, InspectReportsTheMeshAndTheCache) {
             response.geometry_digest().sha256());
   ASSERT_TRUE(Inspect(request, response).ok());
   EXPECT_TRUE(response.spectrum_cached());
+  request.set_eigen_pairs(10);
+  ASSERT_TRUE(Inspect(request, response).ok());
+  EXPECT_TRUE(response.spectrum_cached());
+  request.set_eigen_pairs(300);
+  ASSERT_TRUE(Inspect(request, response).ok());
+  EXPECT_FALSE(response.spectrum_cached());
 }
 
 TEST_F(MeshStoreServiceTest, InspectRefusesWhatSegmentRefuses) {

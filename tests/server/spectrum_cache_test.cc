@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "absl/synchronization/notification.h"
+#include "core/spectrum/solver.h"
+#include "tests/testing/shapes.h"
 
 namespace marrow {
 namespace {
@@ -42,9 +44,16 @@ class FakeSolver : public EigenPairSource {
     auto pairs = std::make_shared<EigenPairs>();
     pairs->eigenvalues = Eigen::VectorXd::Zero(count + 1);
     pairs->eigenvectors.setZero(mesh.mesh.NumVertices(), count + 1);
+    pairs->for_any_count = for_any_count;
     return std::shared_ptr<const EigenPairs>(pairs);
   }
 
+  bool GivesSharedPairs(const CanonicalMesh&, uint32_t) const override {
+    return gives_shared_pairs;
+  }
+
+  bool for_any_count = true;
+  bool gives_shared_pairs = true;
   std::atomic<int> calls{0};
   std::atomic<bool> hold{false};
   std::atomic<bool> fail{false};
@@ -73,6 +82,7 @@ class CountingStreams : public FakeSolver {
       auto pairs = std::make_shared<EigenPairs>();
       const double last = std::min<double>(count_, std::floor(bound) + 1);
       pairs->eigenvalues = Eigen::VectorXd::LinSpaced(last + 1, 0, last);
+      pairs->eigenvectors.setZero(3, pairs->eigenvalues.size());
       return std::shared_ptr<const EigenPairs>(pairs);
     }
 
@@ -120,12 +130,97 @@ TEST_F(SpectrumCacheTest, SecondCallIsAHitOfTheSamePairs) {
   EXPECT_TRUE(cache.Contains(mesh, 10));
 }
 
-TEST_F(SpectrumCacheTest, AnotherCountOrMeshIsAMiss) {
+TEST_F(SpectrumCacheTest, AnotherMeshIsAMiss) {
   SpectrumCache cache(solver_, 1 << 20);
   ASSERT_TRUE(Get(cache, MeshNamed(1), 10).ok());
-  ASSERT_TRUE(Get(cache, MeshNamed(1), 9).ok());
   ASSERT_TRUE(Get(cache, MeshNamed(2), 10).ok());
-  EXPECT_EQ(solver_->calls, 3);
+  EXPECT_EQ(solver_->calls, 2);
+}
+
+TEST_F(SpectrumCacheTest, FewerPairsAreAHitAndAreNoMore) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  ASSERT_TRUE(Get(cache, mesh, 10).ok());
+  EXPECT_TRUE(cache.Contains(mesh, 9));
+  const auto fewer = Get(cache, mesh, 9);
+  EXPECT_EQ(use_.outcome, CacheOutcome::kHit);
+  EXPECT_EQ(use_.solver_runs, 0u);
+  EXPECT_EQ(use_.eigen_pairs, 9u);
+  EXPECT_EQ((*fewer)->NumPairs(), 10u);
+  EXPECT_EQ((*fewer)->eigenvectors.cols(), 10);
+  EXPECT_EQ(solver_->calls, 1);
+}
+
+TEST_F(SpectrumCacheTest, MorePairsExtendTheEntry) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  ASSERT_TRUE(Get(cache, mesh, 10).ok());
+  const uint64_t before = cache.bytes();
+  EXPECT_FALSE(cache.Contains(mesh, 11));
+  EXPECT_EQ((*Get(cache, mesh, 11))->NumPairs(), 12u);
+  EXPECT_EQ(use_.outcome, CacheOutcome::kMiss);
+  // One entry of 100 rows, a pair longer.
+  EXPECT_EQ(cache.bytes(), before + sizeof(double) + 100 * sizeof(float));
+  EXPECT_EQ((*Get(cache, mesh, 10))->NumPairs(), 11u);
+  EXPECT_EQ(use_.outcome, CacheOutcome::kHit);
+  EXPECT_EQ(solver_->calls, 2);
+}
+
+TEST_F(SpectrumCacheTest, WhatIsTooLongToBeKeptLeavesTheEntry) {
+  SpectrumCache cache(solver_, 20'000);
+  const CanonicalMesh mesh = MeshNamed(1);
+  ASSERT_TRUE(Get(cache, mesh, 10).ok());
+  EXPECT_EQ((*Get(cache, mesh, 90))->NumPairs(), 91u);
+  EXPECT_FALSE(cache.Contains(mesh, 90));
+  EXPECT_TRUE(cache.Contains(mesh, 10));
+}
+
+TEST_F(SpectrumCacheTest, PairsOfOneCountAloneAreForThatCount) {
+  SpectrumCache cache(solver_, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  solver_->for_any_count = false;
+  ASSERT_TRUE(Get(cache, mesh, 10).ok());
+  EXPECT_FALSE(cache.Contains(mesh, 9));
+  EXPECT_TRUE(cache.Contains(mesh, 10));
+  solver_->for_any_count = true;
+  ASSERT_TRUE(Get(cache, mesh, 20).ok());
+  solver_->gives_shared_pairs = false;
+  EXPECT_FALSE(cache.Contains(mesh, 9));
+  EXPECT_TRUE(cache.Contains(mesh, 10));
+}
+
+// Whatever the cache has, an answer is that of a solver without one.
+TEST_F(SpectrumCacheTest, AnswersAreThoseOfAColdSolver) {
+  auto solver = std::make_shared<SolverEigenPairSource>();
+  // Sliced, dense, and sliced or dense as many pairs are wanted; a cluster.
+  for (const TriangleMesh& shape :
+       {LimbCross(4), Icosphere(2), Icosphere(3), Torus(2, 0.8, 48, 24)}) {
+    const CanonicalMesh mesh = CanonicalOf(shape);
+    SpectrumCache cache(solver, 1 << 30);
+    for (uint32_t count : {60, 20, 100, 400, 13, 60, 500, 200}) {
+      SCOPED_TRACE(count);
+      const auto warm = *Get(cache, mesh, count);
+      const auto cold = *solver->Get(mesh, count, never_, [](double) {});
+      EXPECT_EQ(warm->NumPairs(), std::min(count + 1, mesh.mesh.NumVertices()));
+      EXPECT_EQ(warm->eigenvalues, cold->eigenvalues);
+      EXPECT_EQ(warm->eigenvectors, cold->eigenvectors);
+      EXPECT_EQ(warm->complete, cold->complete);
+      EXPECT_EQ(warm->area, cold->area);
+      EXPECT_TRUE(cache.Contains(mesh, count));
+    }
+  }
+}
+
+TEST_F(SpectrumCacheTest, AStreamIsGivenNoMoreThanItWasOpenedFor) {
+  auto solver = std::make_shared<CountingStreams>();
+  SpectrumCache cache(solver, 1 << 20);
+  const CanonicalMesh mesh = MeshNamed(1);
+  ASSERT_TRUE(Get(cache, mesh, 40).ok());
+  const auto stream = cache.Open(mesh, 20);
+  const auto pairs = *stream->UpTo(4, never_, nullptr);
+  EXPECT_EQ(pairs->NumPairs(), 21u);
+  EXPECT_EQ(*stream->UpTo(100, never_, nullptr), pairs);
+  EXPECT_EQ(solver->extended, 1);
 }
 
 TEST_F(SpectrumCacheTest, CountsAboveTheMeshAreOneRequest) {

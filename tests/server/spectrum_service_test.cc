@@ -48,6 +48,23 @@ TEST_F(SpectrumServiceTest, PrewarmsTheCache) {
   EXPECT_EQ(solver_->calls, 1);
 }
 
+TEST_F(SpectrumServiceTest, GivesAsManyPairsAsAreAskedForWhateverIsKept) {
+  Start();
+  v1::ComputeSpectrumRequest request;
+  request.mutable_mesh()->set_draco(StarPayload(3));
+  for (uint32_t pairs : {20u, 7u, 30u, 20u}) {
+    request.set_eigen_pairs(pairs);
+    const auto events = Compute(request);
+    ASSERT_TRUE(status_.ok()) << status_.error_message();
+    EXPECT_EQ(events[0].header().pair_count(), pairs + 1);
+    EXPECT_EQ(events[1].eigenvalues().eigenvalues_size(), pairs + 1);
+    const v1::SpectrumUse& use = events[2].completed().spectrum();
+    EXPECT_EQ(use.eigen_pairs(), pairs);
+    EXPECT_EQ(use.solver_runs(), use.outcome() == v1::CACHE_OUTCOME_MISS);
+  }
+  EXPECT_EQ(solver_->calls, 2);
+}
+
 TEST_F(SpectrumServiceTest, EigenvectorsComeOnDemand) {
   Start();
   v1::ComputeSpectrumRequest request;

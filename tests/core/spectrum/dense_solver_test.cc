@@ -1,0 +1,56 @@
+#include "core/spectrum/dense_solver.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "core/operators/laplacian.h"
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+Eigen::SparseMatrix<double> SymmetricForm(const TriangleMesh& mesh) {
+  const Laplacian laplacian = *BuildLaplacian(mesh);
+  const Eigen::VectorXd scale = laplacian.M.cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * laplacian.L * scale.asDiagonal();
+}
+
+TEST(DenseSolverTest, AsEigensButForBeingCancellable) {
+  const CancelToken cancel;
+  for (const TriangleMesh& mesh :
+       {SingleTriangle(), Tetrahedron(), Icosphere(2), Grid(9, 7),
+        WithSlivers(Icosphere(1), 3, 0.0), LimbCross(2)}) {
+    const Eigen::SparseMatrix<double> A = SymmetricForm(mesh);
+    SCOPED_TRACE(A.rows());
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> exact{
+        Eigen::MatrixXd(A)};
+    const int n = static_cast<int>(A.rows());
+    const MatrixPairs all = *SolveDensely(A, n, cancel);
+    EXPECT_EQ(all.values, exact.eigenvalues());
+    EXPECT_EQ(all.vectors, exact.eigenvectors());
+    const MatrixPairs some = *SolveDensely(A, n - 1, cancel);
+    EXPECT_EQ(some.values, all.values.head(n - 1));
+    EXPECT_EQ(some.vectors, all.vectors.leftCols(n - 1));
+  }
+}
+
+TEST(DenseSolverTest, TrivialMatrices) {
+  const CancelToken cancel;
+  for (int n : {1, 2, 5}) {
+    const MatrixPairs zero =
+        *SolveDensely(Eigen::SparseMatrix<double>(n, n), n, cancel);
+    EXPECT_EQ(zero.values, Eigen::VectorXd::Zero(n));
+    EXPECT_EQ(zero.vectors, Eigen::MatrixXd::Identity(n, n));
+  }
+}
+
+TEST(DenseSolverTest, StopsWhenCancelled) {
+  CancelToken cancel;
+  cancel.Cancel();
+  EXPECT_EQ(
+      SolveDensely(SymmetricForm(Icosphere(1)), 3, cancel).status().code(),
+      absl::StatusCode::kCancelled);
+}
+
+}  // namespace
+}  // namespace marrow
