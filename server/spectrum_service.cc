@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "core/operators/bodies.h"
 #include "core/spectrum/certified_spectrum.h"
 #include "server/event_builder.h"
 #include "server/event_stream.h"
@@ -112,6 +113,7 @@ absl::Status Compute(ServiceContext& context, const Work& work,
       CanonicalMesh loaded,
       context.engine.load_mesh(*work.payload.bytes,
                                context.options.mesh_limits));
+  (void)FindBodies(loaded, *job.cancel());  // for the report
   auto mesh = std::make_shared<const CanonicalMesh>(std::move(loaded));
   const Clock::time_point loaded_at = Clock::now();
   job.Progress(v1::STAGE_SPECTRUM, kMeshShare);

@@ -18,8 +18,9 @@ namespace {
 constexpr size_t kMostFaces = 24;
 // Of the vertices, those with the shortest edges go first: so many in a round.
 constexpr double kShareARound = 0.5;
-// Rounds that take away less are not worth their while.
+// Rounds that take away less are not worth their while, nor are more of them.
 constexpr double kLeastGain = 0.03;
+constexpr int kMostRounds = 50;
 
 // What may become of a face.
 struct ShapeLimits {
@@ -68,12 +69,13 @@ class Coarsener {
   uint32_t num_vertices() const { return num_vertices_; }
 
   // Takes away vertices that are no neighbours of each other, down to `least`.
-  void Round(uint32_t least, const ShapeLimits& limits) {
+  void Round(uint32_t least, const ShapeLimits& limits,
+             const CancelToken& cancel) {
     limits_ = limits;
     GatherStars();
     locked_.assign(mesh_.NumVertices(), false);
     for (uint32_t u : ShortestFirst()) {
-      if (num_vertices_ <= least) break;
+      if (num_vertices_ <= least || cancel.IsCancelled()) break;
       if (!locked_[u]) TryCollapse(u);
     }
     std::erase_if(live_, [&](uint32_t f) { return heir_[f] != f; });
@@ -307,12 +309,16 @@ class Coarsener {
 
 }  // namespace
 
-CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices) {
+CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices,
+                   const CancelToken& cancel) {
   Coarsener coarsener(mesh);
   for (const ShapeLimits& limits : kShapeLimits)
-    while (coarsener.num_vertices() > num_vertices) {
+    for (int round = 0;
+         round < kMostRounds && coarsener.num_vertices() > num_vertices &&
+         !cancel.IsCancelled();
+         ++round) {
       const uint32_t before = coarsener.num_vertices();
-      coarsener.Round(num_vertices, limits);
+      coarsener.Round(num_vertices, limits, cancel);
       if (before - coarsener.num_vertices() < kLeastGain * before) break;
     }
   return coarsener.Take();

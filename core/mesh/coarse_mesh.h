@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -20,22 +21,24 @@ struct CoarseMesh {
   std::vector<uint32_t> coarse_face;
 };
 
-// Collapses short edges into one of their ends, round after round, until about
+// Collapses short edges into one of their ends, round after round, until
 // `num_vertices` are left, or until hardly any edge can go. The vertices that
 // are left lie evenly on the surface.
 //
 // Keeps the topology: an edge goes only where the ends have no other neighbours
 // in common than its faces do (the link condition, Dey, Edelsbrunner, Guha and
 // Nekhayev 1999); boundaries stay boundaries, and vertices where the mesh is no
-// manifold stay. No face is turned by more than 60 degrees or made a sliver,
-// unless too many vertices are left by that; then more is allowed. The patches
-// of fine faces partition the fine mesh, each is connected across edges, and
-// two coarse faces that share an edge have patches that do: so what is
-// connected on the coarse mesh is connected on the fine one.
+// manifold stay. No collapse turns a face by more than 60 degrees or makes it a
+// sliver, unless too many vertices are left by that; then more is allowed. The
+// patches of fine faces partition the fine mesh, each is connected across
+// edges, and two coarse faces that share an edge have patches that do: so what
+// is connected on the coarse mesh is connected on the fine one.
 //
-// `mesh` is canonical. Deterministic; linear in the mesh but for sorting,
-// however many faces a vertex has. Thread safe.
-CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices);
+// `mesh` is canonical. Once cancelled, it stops where it is: the result holds,
+// with more vertices. Deterministic; a round is linear in the mesh but for
+// sorting, however many faces a vertex has. Thread safe.
+CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices,
+                   const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

@@ -236,12 +236,13 @@ Body WholeBody(const CanonicalMesh& mesh) {
 }
 
 // Rule 5, noted in the report.
-void CoarsenLarge(Bodies& bodies, MeshReport& report) {
+void CoarsenLarge(const CancelToken& cancel, Bodies& bodies,
+                  MeshReport& report) {
   report.coarse_vertices = 0;
   for (Body& body : bodies.bodies) {
     const TriangleMesh& mesh = body.canonical->mesh;
     if (mesh.NumVertices() <= kLargeBody) continue;
-    CoarseMesh coarse = Coarsen(mesh, kCoarseVertices);
+    CoarseMesh coarse = Coarsen(mesh, kCoarseVertices, cancel);
     const uint32_t left = coarse.canonical.mesh.NumVertices();
     if (left > mesh.NumVertices() / 2) continue;
     body.coarse = std::make_shared<const CoarseMesh>(std::move(coarse));
@@ -311,9 +312,9 @@ Bodies SortOut(CanonicalMesh& mesh) {
 
 }  // namespace
 
-Bodies FindBodies(CanonicalMesh& mesh) {
+Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
   Bodies result = SortOut(mesh);
-  CoarsenLarge(result, mesh.report);
+  CoarsenLarge(cancel, result, mesh.report);
   return result;
 }
 

@@ -26,6 +26,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
 #include "core/mesh/coarse_mesh.h"
 #include "core/operators/bridges.h"
@@ -74,8 +75,10 @@ struct Bodies {
 };
 
 // Takes the rules above to a mesh, and notes in its report what came of them.
-// Deterministic, O(n log^2 n). Thread safe.
-Bodies FindBodies(CanonicalMesh& mesh);
+// Deterministic, O(n log^2 n). Once cancelled, large bodies may have no coarse
+// mesh. Thread safe.
+Bodies FindBodies(CanonicalMesh& mesh,
+                  const CancelToken& cancel = CancelToken());
 
 // How many of the `count` pairs asked for a body has: its share of them, as
 // the shortest wave that they can tell is then the same on all bodies, but

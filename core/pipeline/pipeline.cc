@@ -36,7 +36,8 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   const auto workspace = std::make_shared<Workspace>();
   CanonicalMesh& canonical = workspace->canonical;
   MARROW_ASSIGN_OR_RETURN(canonical, LoadMesh(draco_bytes, limits));
-  const Bodies& bodies = workspace->bodies = FindBodies(canonical);
+  const Bodies& bodies = workspace->bodies = FindBodies(canonical, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
   const Prepared& prepared =

@@ -141,7 +141,8 @@ class Slicer : public SpectrumSlicer {
   }
 
   // At least one band more, or an error in status_. Of the bands at work when
-  // one fails, those before it are kept: which do not depends on the threads.
+  // one fails, those before it are kept, which are the same for any number of
+  // threads.
   absl::Status FindMore(const PairsWanted& wanted, const CancelToken& cancel,
                         Report& report) {
     const size_t before = bands_.size();

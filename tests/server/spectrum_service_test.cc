@@ -40,6 +40,7 @@ TEST_F(SpectrumServiceTest, PrewarmsTheCache) {
   ASSERT_EQ(events.size(), 3u);
   EXPECT_EQ(events[0].header().pair_count(), 21u);
   EXPECT_EQ(events[0].header().report().vertices(), 642u);
+  EXPECT_EQ(events[0].header().report().bodies(), 1u);
   EXPECT_EQ(events[1].eigenvalues().eigenvalues_size(), 21);
   EXPECT_EQ(events[1].eigenvalues().eigenvalues(0), 0);
   EXPECT_EQ(events[2].completed().spectrum().outcome(), v1::CACHE_OUTCOME_MISS);
