@@ -61,7 +61,9 @@ class EigenPairStream {
   virtual ~EigenPairStream() = default;
 
   // All pairs up to the eigenvalue `bound` and at least one beyond it, or as
-  // many as the stream was opened for; more where more are at hand. A longer
+  // many as the stream was opened for; more where more are at hand. The
+  // constant pair alone where the bound is 0 and all that follows are more
+  // equal eigenvalues than a band has: no truncation may part those. A longer
   // answer begins with the bytes of the shorter ones. Errors: as Get(), and
   // then the stream is not to be used any more.
   virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(

@@ -156,7 +156,7 @@ class SolverStream : public EigenPairStream {
   bool Reaches(const EigenPairs& pairs, double bound) const {
     const int there = static_cast<int>(pairs.NumPairs());
     return there == most_ ||
-           (there > 1 && pairs.eigenvalues[there - 1] > bound);
+           (there > 0 && pairs.eigenvalues[there - 1] > bound);
   }
 
   absl::Status Prepare(const CancelToken& cancel) {
@@ -200,11 +200,11 @@ class SolverStream : public EigenPairStream {
     };
     while (!Reaches(pairs, bound)) {
       auto parts = slicer_->Find({most_, bound}, cancel, report);
-      // To the slicer the constant pair may be above a bound of 0.
-      if (parts.ok() && parts->empty())
-        parts = slicer_->Find({static_cast<int>(pairs.NumPairs()) + 1}, cancel,
-                              report);
       if (!parts.ok()) return TakeReference(parts.status(), cancel, pairs);
+      // A first band of the constant pair alone is above a bound of 0 to the
+      // slicer. What follows is a cluster too large for a band: nothing that
+      // is worth its time to who asks for as little as can be.
+      if (parts->empty()) break;
       for (const SpectrumPart& part : *parts)
         pairs.for_any_count &= !part.of_cluster;
       Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,
