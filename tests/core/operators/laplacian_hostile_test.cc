@@ -1,6 +1,5 @@
 // Every guarantee of the operator on meshes that plain cotangents fail on.
 #include <Eigen/Eigenvalues>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -16,6 +15,7 @@
 #include "gtest/gtest.h"
 #include "tests/core/operators/guarantees.h"
 #include "tests/core/operators/hostile_shapes.h"
+#include "tests/testing/cpu_time.h"
 
 namespace marrow {
 namespace {
@@ -140,21 +140,20 @@ TEST(LaplacianHostileTest, TheTriangulationDoesNotMatter) {
 }
 
 double SecondsToBuild(const TriangleMesh& mesh) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = CpuSeconds();
   const Laplacian laplacian = Build(mesh);
-  const std::chrono::duration<double> seconds =
-      std::chrono::steady_clock::now() - start;
+  const double seconds = CpuSeconds() - start;
   ExpectGuarantees(mesh, laplacian);
-  return seconds.count();
+  return seconds;
 }
 
 // Quadratic work on 200,000 would take minutes.
 TEST(LaplacianHostileTest, GreatDegreesStayQuick) {
-  EXPECT_LT(SecondsToBuild(Pages(100'000)), 5);
-  EXPECT_LT(SecondsToBuild(Fan(200'000, 0)), 5);
-  EXPECT_LT(SecondsToBuild(Fan(200'000, 0.9)), 5);
-  EXPECT_LT(SecondsToBuild(Bipyramid(100'000)), 5);
-  EXPECT_LT(SecondsToBuild(Cones(1000, 100)), 5);
+  EXPECT_LT(SecondsToBuild(Pages(100'000)), Allowed(5));
+  EXPECT_LT(SecondsToBuild(Fan(200'000, 0)), Allowed(5));
+  EXPECT_LT(SecondsToBuild(Fan(200'000, 0.9)), Allowed(5));
+  EXPECT_LT(SecondsToBuild(Bipyramid(100'000)), Allowed(5));
+  EXPECT_LT(SecondsToBuild(Cones(1000, 100)), Allowed(5));
 }
 
 // A fan about a point off the centre of a flat ellipse takes a number of flips
