@@ -1,11 +1,5 @@
-// Block Lanczos with full orthogonalisation for (A - shift I)^-1, whose largest
-// eigenvalues theta = 1 / (lambda - shift) are the nearest lambda.
-//
-// The process begins with the solutions of a random block, not with that block:
-// it would hold little of what is wanted. The projected matrix T is kept whole,
-// not its band alone, so that a block may hold new directions where the process
-// found an invariant subspace; that is how a cluster with more members than a
-// block has columns comes out whole.
+// Block Lanczos for (A - shift I)^-1, whose largest eigenvalues
+// theta = 1 / (lambda - shift) are the nearest lambda.
 //
 // With (A - shift I)^-1 V = V T + Q R and T s = theta s the Ritz vector V s has
 // a residual under A that may be huge, for what is rough in Q. The vector
@@ -17,7 +11,6 @@
 #include "core/spectrum/band_lanczos.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,8 +19,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
+#include "core/spectrum/dense_solver.h"
 #include "core/spectrum/inverse_iteration.h"
 #include "core/spectrum/lanczos_basis.h"
+#include "core/spectrum/lanczos_process.h"
 
 namespace marrow {
 namespace {
@@ -50,13 +45,16 @@ constexpr double kUsualRate = 1;
 constexpr double kTrustedShare = 0.8;
 // A basis of more than so many vectors a pair grows by this share between
 // looks, whose cost is cubic: many equal eigenvalues take a basis that large.
-constexpr int kSlow = 3;
+constexpr int kSlow = 5;
 constexpr int kSlowLooks = 4;
 // From here on a look takes so long that more must come of it.
 constexpr int kLargeBasis = 560;
 constexpr double kMostExcess = 6;
-// Blocks written at once, so that the basis is read once for them.
-constexpr int kTogether = 3;
+// Blocks written at once, so that the basis is read once for them; fewer where
+// they are large.
+constexpr int kMostTogether = 7;
+constexpr int kLeastTogether = 3;
+constexpr int kLargeBlocks = 300'000;
 // The estimate of a residual leaves out rounding and the other pairs' share.
 constexpr double kEstimateShare = 0.5;
 constexpr int kMostRefinements = 4;
@@ -78,11 +76,11 @@ class BandFinder {
         request_(request),
         team_(team),
         cancel_(cancel),
-        basis_(matrix.n, workspace.blocks, team),
-        seed_(1000 * request.extra_steps) {}
+        process_(matrix.n, factor, 1000 * request.extra_steps, workspace.blocks,
+                 team, cancel) {}
 
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
-    MARROW_RETURN_IF_ERROR(Start());
+    MARROW_RETURN_IF_ERROR(process_.Start());
     const int wanted = request_.below + request_.above;
     const int most = std::min(matrix_.n - kBlock, 6 * wanted + 40 * kBlock);
     const int first_look =
@@ -90,10 +88,11 @@ class BandFinder {
     int extra = request_.extra_steps;
     int unseen = 0;
     while (basis_.dimension() < most) {
-      MARROW_RETURN_IF_ERROR(Step());
+      MARROW_RETURN_IF_ERROR(process_.Step());
       on_step();
-      if (T_.rows() < first_look) continue;
+      if (process_.T().rows() < first_look) continue;
       if (unseen-- > 0 && basis_.dimension() < most) continue;
+      MARROW_RETURN_IF_ERROR(Look(kBlock));
       if (Converged()) {
         if (extra-- <= 0) return Extract();
       } else if (Stagnates()) {
@@ -107,42 +106,17 @@ class BandFinder {
   }
 
  private:
-  absl::Status FillAnew(double* Z) {
-    basis_.FillRandomly(Z, ++seed_);
-    return factor_.Solve(Z, team_, cancel_);
-  }
-
-  absl::Status Append(LanczosBasis::Growth& growth) {
-    return basis_.Append([this](double* Z) { return FillAnew(Z); }, cancel_,
-                         growth);
-  }
-
-  // The solutions of a random block.
-  absl::Status Start() {
-    MARROW_RETURN_IF_ERROR(FillAnew(basis_.Block(0)));
-    LanczosBasis::Growth unused;
-    return Append(unused);
-  }
-
-  // Takes the last block of the basis through the operator.
-  absl::Status Step() {
-    double* W = basis_.Block(basis_.num_blocks());
-    basis_.Copy(basis_.num_blocks() - 1, W);
-    MARROW_RETURN_IF_ERROR(factor_.Solve(W, team_, cancel_));
-    LanczosBasis::Growth growth;
-    MARROW_RETURN_IF_ERROR(Append(growth));
-    const Eigen::Index old = T_.rows();
-    T_.conservativeResize(old + kBlock, old + kBlock);
-    T_.rightCols(kBlock) = growth.projection;
-    T_.bottomRows(kBlock) = growth.projection.transpose();
-    R_ = growth.remainder;
+  // Solves the projected problem, for so many of the last rows of its vectors.
+  absl::Status Look(Eigen::Index rows) {
+    const Eigen::MatrixXd& T = process_.T();
+    MARROW_ASSIGN_OR_RETURN(
+        ritz_, SolveForLastRows(0.5 * (T + T.transpose()), rows, cancel_));
+    tail_ = process_.R() * ritz_.vectors.bottomRows(kBlock);
     return absl::OkStatus();
   }
 
-  // Solves the projected problem and picks the pairs.
+  // Picks the pairs.
   bool Converged() {
-    ritz_.compute(0.5 * (T_ + T_.transpose()));
-    tail_ = R_ * ritz_.eigenvectors().bottomRows(kBlock);
     above_ = MakeSide(true);
     below_ = MakeSide(false);
     if (below_.value.empty() && above_.value.empty()) return false;
@@ -198,7 +172,7 @@ class BandFinder {
   }
 
   Side MakeSide(bool above) const {
-    const Eigen::VectorXd& theta = ritz_.eigenvalues();
+    const Eigen::VectorXd& theta = ritz_.values;
     Side side;
     const int m = static_cast<int>(theta.size());
     for (int i = 0; i < m; ++i) {
@@ -252,6 +226,8 @@ class BandFinder {
   }
 
   absl::StatusOr<Band> Extract() {
+    // By the same steps, so the values are those that were looked at.
+    MARROW_RETURN_IF_ERROR(Look(process_.T().rows()));
     Band band;
     band.below = num_below_;
     std::vector<int> chosen;
@@ -296,8 +272,8 @@ class BandFinder {
     const int count = static_cast<int>(chosen.size());
     Eigen::MatrixXd coefficients(basis_.dimension(), count);
     for (int c = 0; c < count; ++c) {
-      const double theta = ritz_.eigenvalues()[chosen[c]];
-      coefficients.col(c) << ritz_.eigenvectors().col(chosen[c]),
+      const double theta = ritz_.values[chosen[c]];
+      coefficients.col(c) << ritz_.vectors.col(chosen[c]),
           tail_.col(chosen[c]) / theta;
     }
     const Eigen::MatrixXd gram = coefficients.transpose() * coefficients;
@@ -309,11 +285,14 @@ class BandFinder {
     const size_t count = band.values.size();
     band.vectors.resize(matrix_.n * count);
     band.residuals.resize(count);
-    const int width = kTogether * kBlock;
-    for (size_t begin = 0; begin < count; begin += width) {
+    const size_t most =
+        kBlock * (matrix_.n < kLargeBlocks ? kMostTogether : kLeastTogether);
+    size_t there;
+    for (size_t begin = 0; begin < count; begin += there) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
-      RowMajorMatrix some = RowMajorMatrix::Zero(coefficients.rows(), width);
-      const size_t there = std::min<size_t>(width, count - begin);
+      there = std::min(most, count - begin);
+      RowMajorMatrix some = RowMajorMatrix::Zero(
+          coefficients.rows(), Window::PaddedWidth(static_cast<int>(there)));
       some.leftCols(there) = coefficients.middleCols(begin, there);
       MARROW_RETURN_IF_ERROR(WriteBlocks(some, begin, band));
     }
@@ -391,16 +370,17 @@ class BandFinder {
   // Vectors `begin` and after of the band, and their residuals.
   absl::Status WriteBlocks(const RowMajorMatrix& coefficients, size_t begin,
                            Band& band) {
-    std::array<double*, kTogether> Y, scratch;
-    const int scratch_blocks = std::min(kTogether, team_.threads());
-    for (int i = 0; i < kTogether; ++i)
-      Y[i] = basis_.Block(basis_.num_blocks() + i);
+    const int blocks = static_cast<int>(coefficients.cols()) / kBlock;
+    const int scratch_blocks = std::min(blocks, team_.threads());
+    std::vector<double*> Y, scratch;
+    for (int i = 0; i < blocks; ++i)
+      Y.push_back(basis_.Block(basis_.num_blocks() + i));
     for (int i = 0; i < scratch_blocks; ++i)
-      scratch[i] = basis_.Block(basis_.num_blocks() + kTogether + i);
+      scratch.push_back(basis_.Block(basis_.num_blocks() + blocks + i));
     MARROW_RETURN_IF_ERROR(basis_.Combine(coefficients, Y, cancel_));
-    for (int b = 0; b < kTogether; b += scratch_blocks) {
+    for (int b = 0; b < blocks; b += scratch_blocks) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
-      team_.For(std::min(scratch_blocks, kTogether - b), [&](int i) {
+      team_.For(std::min(scratch_blocks, blocks - b), [&](int i) {
         WriteBlock(begin + (b + i) * kBlock, Y[b + i], scratch[i], band);
       });
     }
@@ -434,11 +414,9 @@ class BandFinder {
   const BandRequest& request_;
   Team& team_;
   const CancelToken& cancel_;
-  LanczosBasis basis_;
-  uint64_t seed_;
-  Eigen::MatrixXd T_;
-  Eigen::MatrixXd R_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz_;
+  LanczosProcess process_;
+  LanczosBasis& basis_ = process_.basis();
+  MatrixPairs ritz_;
   Eigen::MatrixXd tail_;  // R times the last block of every Ritz vector
   Side above_, below_;
   double floor_ = 0;

@@ -4,8 +4,8 @@
 // for a newer CPU can be linked into an older one's path.
 //
 // A tile of C, kTileRows by two registers, is kept in registers over the whole
-// of k. It is the one loop behind the factorisation, the solves, the Gram
-// matrices and the updates.
+// of k. It is the one loop behind the factorisation, the Gram matrices and the
+// updates; solves have their own, which read a factor in one go.
 #ifndef MARROW_CORE_SPECTRUM_DENSE_KERNELS_BODY_H_
 #define MARROW_CORE_SPECTRUM_DENSE_KERNELS_BODY_H_
 
@@ -17,28 +17,15 @@ namespace {
 typedef double Register
     __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
 
-// Rows one after the other.
-template <typename T>
-struct PlainRows {
-  T* data;
-  int stride;
-  T* Row(int i) const { return data + static_cast<long>(i) * stride; }
-};
+// Registers of a row of a block.
+constexpr int kRow = kBlock / kLanes;
 
-// Rows picked by index.
-template <typename T>
-struct PickedRows {
-  T* data;
-  const int* rows;
-  T* Row(int i) const { return data + static_cast<long>(rows[i]) * kBlock; }
-};
-
-template <int kRows, int kRegisters, bool kAdd, typename BRows, typename CRows>
-inline void Tile(int k, const double* a, StridedMatrix A, BRows B, CRows C,
-                 int i, int j) {
+template <int kRows, int kRegisters, bool kAdd>
+inline void Tile(int k, const double* a, StridedMatrix A, const double* B,
+                 int ldb, double* C, int ldc) {
   Register sum[kRows][kRegisters] = {};
   for (int l = 0; l < k; ++l) {
-    const double* b = B.Row(l) + j;
+    const double* b = B + static_cast<long>(l) * ldb;
     Register right[kRegisters];
 #pragma GCC unroll 4
     for (int v = 0; v < kRegisters; ++v)
@@ -53,7 +40,7 @@ inline void Tile(int k, const double* a, StridedMatrix A, BRows B, CRows C,
   }
 #pragma GCC unroll 16
   for (int r = 0; r < kRows; ++r) {
-    double* c = C.Row(i + r) + j;
+    double* c = C + static_cast<long>(r) * ldc;
 #pragma GCC unroll 4
     for (int v = 0; v < kRegisters; ++v) {
       Register& out = *reinterpret_cast<Register*>(c + v * kLanes);
@@ -62,111 +49,238 @@ inline void Tile(int k, const double* a, StridedMatrix A, BRows B, CRows C,
   }
 }
 
-// All rows of kRegisters registers' columns from j.
-template <int kRegisters, bool kAdd, typename BRows, typename CRows>
-inline void Columns(int m, int k, StridedMatrix A, BRows B, CRows C, int j) {
-  const double* a = A.data;
+// All rows of kRegisters registers' columns.
+template <int kRegisters, bool kAdd>
+inline void Columns(int m, int k, StridedMatrix A, const double* B, int ldb,
+                    double* C, int ldc) {
+  const auto tile = [&]<int kRows>(int i) {
+    Tile<kRows, kRegisters, kAdd>(k, A.data + static_cast<long>(i) * A.row, A,
+                                  B, ldb, C + static_cast<long>(i) * ldc, ldc);
+  };
   int i = 0;
   for (; i + kTileRows <= m; i += kTileRows)
-    Tile<kTileRows, kRegisters, kAdd>(k, a + static_cast<long>(i) * A.row, A, B,
-                                      C, i, j);
-  for (; i + 4 <= m; i += 4)
-    Tile<4, kRegisters, kAdd>(k, a + static_cast<long>(i) * A.row, A, B, C, i,
-                              j);
-  for (; i < m; ++i)
-    Tile<1, kRegisters, kAdd>(k, a + static_cast<long>(i) * A.row, A, B, C, i,
-                              j);
+    tile.template operator()<kTileRows>(i);
+  for (; i + 4 <= m; i += 4) tile.template operator()<4>(i);
+  for (; i < m; ++i) tile.template operator()<1>(i);
 }
 
-template <bool kAdd, typename BRows, typename CRows>
-inline void Multiply(int m, int n, int k, StridedMatrix A, BRows B, CRows C) {
+template <bool kAdd>
+inline void Multiply(int m, int n, int k, StridedMatrix A, const double* B,
+                     int ldb, double* C, int ldc) {
   int j = 0;
   for (; j + 2 * kLanes <= n; j += 2 * kLanes)
-    Columns<2, kAdd>(m, k, A, B, C, j);
-  for (; j + kLanes <= n; j += kLanes) Columns<1, kAdd>(m, k, A, B, C, j);
+    Columns<2, kAdd>(m, k, A, B + j, ldb, C + j, ldc);
+  for (; j + kLanes <= n; j += kLanes)
+    Columns<1, kAdd>(m, k, A, B + j, ldb, C + j, ldc);
 }
 
 void MultiplyAdd(int m, int n, int k, StridedMatrix A, const double* B, int ldb,
                  double* C, int ldc) {
-  Multiply<true>(m, n, k, A, PlainRows<const double>{B, ldb},
-                 PlainRows<double>{C, ldc});
+  Multiply<true>(m, n, k, A, B, ldb, C, ldc);
 }
 
 void MultiplySubtract(int m, int n, int k, StridedMatrix A, const double* B,
                       int ldb, double* C, int ldc) {
-  Multiply<false>(m, n, k, A, PlainRows<const double>{B, ldb},
-                  PlainRows<double>{C, ldc});
+  Multiply<false>(m, n, k, A, B, ldb, C, ldc);
 }
 
-void ScatterSubtract(int m, int k, StridedMatrix A, const double* B, double* C,
-                     const int* c_rows) {
-  Multiply<false>(m, kBlock, k, A, PlainRows<const double>{B, kBlock},
-                  PickedRows<double>{C, c_rows});
-}
-
-void GatherSubtract(int m, int k, StridedMatrix A, const double* B,
-                    const int* b_rows, double* C) {
-  Multiply<false>(m, kBlock, k, A, PickedRows<const double>{B, b_rows},
-                  PlainRows<double>{C, kBlock});
-}
-
-// Row i of X less the multiples of rows from `begin` up to `end`.
-inline void SubtractRows(int begin, int end, const double* factors, int stride,
-                         double* X, int i) {
-  constexpr int kRegisters = kBlock / kLanes;
-  Register sum[kRegisters];
-  Register* row =
-      reinterpret_cast<Register*>(X + static_cast<long>(i) * kBlock);
+// kRows rows of the sum of products, which stay in registers over all of them.
+template <int kRows, bool kAdd>
+inline void BlockRows(int count, const double* const* A, size_t at,
+                      const double* B, int ldb, double* C) {
+  Register sum[kRows][kRow] = {};
+  for (int j = 0; j < count; ++j) {
+    const double* a = A[j] + at;
+    for (int l = 0; l < kBlock; ++l, B += ldb) {
+      Register right[kRow];
+#pragma GCC unroll 4
+      for (int v = 0; v < kRow; ++v)
+        right[v] = *reinterpret_cast<const Register*>(B + v * kLanes);
 #pragma GCC unroll 8
-  for (int v = 0; v < kRegisters; ++v) sum[v] = row[v];
-  for (int l = begin; l < end; ++l) {
-    const Register* other =
-        reinterpret_cast<const Register*>(X + static_cast<long>(l) * kBlock);
-    const double factor = factors[static_cast<long>(l) * stride];
-#pragma GCC unroll 8
-    for (int v = 0; v < kRegisters; ++v) sum[v] -= factor * other[v];
+      for (int r = 0; r < kRows; ++r) {
+        const double factor = a[r * kBlock + l];
+#pragma GCC unroll 4
+        for (int v = 0; v < kRow; ++v) sum[r][v] += factor * right[v];
+      }
+    }
   }
 #pragma GCC unroll 8
-  for (int v = 0; v < kRegisters; ++v) row[v] = sum[v];
+  for (int r = 0; r < kRows; ++r)
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) {
+      Register& out = *reinterpret_cast<Register*>(C + r * kBlock + v * kLanes);
+      out = kAdd ? out + sum[r][v] : out - sum[r][v];
+    }
 }
 
-// Triangles are solved in steps of this many rows; what is outside of them is
-// a product of matrices.
-constexpr int kStep = 8;
+template <bool kAdd>
+inline void Blocks(int m, int count, const double* const* A, size_t at,
+                   const double* B, int ldb, double* C) {
+  constexpr int kRows = kBlock == kLanes ? 8 : 4;
+  int i = 0;
+  for (; i + kRows <= m; i += kRows, at += kRows * kBlock, C += kRows * kBlock)
+    BlockRows<kRows, kAdd>(count, A, at, B, ldb, C);
+  for (; i < m; ++i, at += kBlock, C += kBlock)
+    BlockRows<1, kAdd>(count, A, at, B, ldb, C);
+}
 
-void LowerSolve(int width, const double* panel, int stride, double* X) {
-  for (int begin = 0; begin < width; begin += kStep) {
-    const int end = begin + kStep < width ? begin + kStep : width;
-    for (int i = begin + 1; i < end; ++i)
-      SubtractRows(begin, i, panel + i, stride, X, i);
-    if (end == width) return;
-    const double* block = panel + static_cast<long>(begin) * stride + end;
-    MultiplySubtract(width - end, kBlock, end - begin, {block, 1, stride},
-                     X + begin * kBlock, kBlock, X + end * kBlock, kBlock);
+void BlocksAdd(int m, int count, const double* const* A, size_t at,
+               const double* B, int ldb, double* C) {
+  Blocks<true>(m, count, A, at, B, ldb, C);
+}
+
+void BlocksSubtract(int m, int count, const double* const* A, size_t at,
+                    const double* B, int ldb, double* C) {
+  Blocks<false>(m, count, A, at, B, ldb, C);
+}
+
+// Tiles worked on at once: enough sums that none waits for the one before.
+constexpr int kTogether = kRow == 1 ? 2 : 1;
+
+inline Register* RowOf(double* X, const int* rows, int i) {
+  return reinterpret_cast<Register*>(
+      X + static_cast<long>(rows == nullptr ? i : rows[i]) * kBlock);
+}
+inline const Register* RowOf(const double* X, const int* rows, int i) {
+  return RowOf(const_cast<double*>(X), rows, i);
+}
+
+void SparseSubtract(int n, const size_t* start, const int* columns,
+                    const double* values, const double* X, double* Y) {
+  for (int i = 0; i < n; ++i) {
+    Register sum[kRow] = {};
+    for (size_t e = start[i]; e < start[i + 1]; ++e)
+      for (int v = 0; v < kRow; ++v)
+        sum[v] += values[e] * RowOf(X, columns, static_cast<int>(e))[v];
+    for (int v = 0; v < kRow; ++v) RowOf(Y, nullptr, i)[v] -= sum[v];
   }
 }
 
-void UpperSolve(int width, const double* panel, int stride, double* X) {
-  for (int begin = (width - 1) / kStep * kStep; begin >= 0; begin -= kStep) {
-    const int end = begin + kStep < width ? begin + kStep : width;
-    const double* rows = panel + static_cast<long>(begin) * stride;
-    if (end < width)
-      MultiplySubtract(end - begin, kBlock, width - end,
-                       {rows + end, stride, 1}, X + end * kBlock, kBlock,
-                       X + begin * kBlock, kBlock);
-    for (int i = end - 2; i >= begin; --i)
-      SubtractRows(i + 1, end, panel + static_cast<long>(i) * stride, 1, X, i);
+// sum = the product of kTiles tiles with k rows of X.
+template <int kTiles>
+inline void MultiplyTiles(int k, const double* P, const double* X,
+                          Register (&sum)[kTiles * kTile][kRow]) {
+  for (int l = 0; l < k; ++l) {
+    Register right[kRow];
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) right[v] = RowOf(X, nullptr, l)[v];
+#pragma GCC unroll 8
+    for (int r = 0; r < kTiles * kTile; ++r) {
+      const double factor =
+          P[(static_cast<long>(r / kTile) * k + l) * kTile + r % kTile];
+#pragma GCC unroll 4
+      for (int v = 0; v < kRow; ++v) sum[r][v] += factor * right[v];
+    }
   }
+}
+
+// `rows` of the tiles are there.
+template <int kTiles>
+inline void TileDown(int rows, int k, const double* P, const double* X,
+                     double* C, const int* c_rows, int i) {
+  Register sum[kTiles * kTile][kRow] = {};
+  MultiplyTiles<kTiles>(k, P, X, sum);
+#pragma GCC unroll 8
+  for (int r = 0; r < kTiles * kTile; ++r) {
+    if (r >= rows) return;
+    Register* out = RowOf(C, c_rows, i + r);
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) out[v] -= sum[r][v];
+  }
+}
+
+void TilesDown(int m, int k, const double* P, const double* X, double* C,
+               const int* c_rows) {
+  constexpr int kRows = kTogether * kTile;
+  int i = 0;
+  for (; i + kRows <= m; i += kRows, P += static_cast<long>(kRows) * k)
+    TileDown<kTogether>(kRows, k, P, X, C, c_rows, i);
+  for (; i < m; i += kTile, P += static_cast<long>(kTile) * k)
+    TileDown<1>(m - i, k, P, X, C, c_rows, i);
+}
+
+// sum += or -= the transpose of kTiles tiles times their rows of X.
+template <int kTiles, bool kAdd>
+inline void AddTransposed(int k, const double* P,
+                          const Register (&x)[kTiles * kTile][kRow],
+                          double* sum) {
+  for (int l = 0; l < k; ++l) {
+    Register* out = RowOf(sum, nullptr, l);
+    Register total[kRow];
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) total[v] = out[v];
+#pragma GCC unroll 8
+    for (int r = 0; r < kTiles * kTile; ++r) {
+      const double factor =
+          P[(static_cast<long>(r / kTile) * k + l) * kTile + r % kTile];
+#pragma GCC unroll 4
+      for (int v = 0; v < kRow; ++v)
+        total[v] =
+            kAdd ? total[v] + factor * x[r][v] : total[v] - factor * x[r][v];
+    }
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) out[v] = total[v];
+  }
+}
+
+// Rows that are not there are the first one, times zero.
+template <int kTiles>
+inline void TileUp(int rows, int k, const double* P, const double* X,
+                   const int* x_rows, int i, double* sum) {
+  Register x[kTiles * kTile][kRow];
+#pragma GCC unroll 8
+  for (int r = 0; r < kTiles * kTile; ++r) {
+    const Register* row = RowOf(X, x_rows, r < rows ? i + r : i);
+#pragma GCC unroll 4
+    for (int v = 0; v < kRow; ++v) x[r][v] = row[v];
+  }
+  AddTransposed<kTiles, false>(k, P, x, sum);
+}
+
+void TilesUp(int m, int k, const double* P, const double* X, const int* x_rows,
+             double* sum) {
+  constexpr int kRows = kTogether * kTile;
+  int i = 0;
+  for (; i + kRows <= m; i += kRows, P += static_cast<long>(kRows) * k)
+    TileUp<kTogether>(kRows, k, P, X, x_rows, i, sum);
+  for (; i < m; i += kTile, P += static_cast<long>(kTile) * k)
+    TileUp<1>(m - i, k, P, X, x_rows, i, sum);
+}
+
+// The last rows first: those before them are still what they were.
+void TriangleDown(int k, const double* T, double* X) {
+  for (int i = (k - 1) / kTile * kTile; i >= 0; i -= kTile) {
+    const int columns = TriangleTileColumns(k, i);
+    Register sum[kTile][kRow] = {};
+    MultiplyTiles<1>(columns, T, X, sum);
+    T += kTile * columns;
+    for (int r = 0; r < kTile && i + r < k; ++r)
+      for (int v = 0; v < kRow; ++v) RowOf(X, nullptr, i + r)[v] = sum[r][v];
+  }
+}
+
+void TriangleUp(int k, const double* T, const double* scale, double* sum,
+                double* X) {
+  for (int i = (k - 1) / kTile * kTile; i >= 0; i -= kTile) {
+    const int columns = TriangleTileColumns(k, i);
+    Register x[kTile][kRow] = {};
+    for (int r = 0; r < kTile && i + r < k; ++r)
+      for (int v = 0; v < kRow; ++v)
+        x[r][v] = scale[i + r] * RowOf(X, nullptr, i + r)[v];
+    AddTransposed<1, true>(columns, T, x, sum);
+    T += kTile * columns;
+  }
+  for (int i = 0; i < k; ++i)
+    for (int v = 0; v < kRow; ++v)
+      RowOf(X, nullptr, i)[v] = RowOf(sum, nullptr, i)[v];
 }
 
 constexpr DenseKernels KernelsNamed(const char* name) {
-  return {&MultiplyAdd,
-          &MultiplySubtract,
-          &ScatterSubtract,
-          &GatherSubtract,
-          &LowerSolve,
-          &UpperSolve,
-          name};
+  return {&MultiplyAdd,    &MultiplySubtract,
+          &BlocksAdd,      &BlocksSubtract,
+          &SparseSubtract, &TilesDown,
+          &TilesUp,        &TriangleDown,
+          &TriangleUp,     name};
 }
 
 }  // namespace

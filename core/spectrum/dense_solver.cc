@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/base/error_reason.h"
@@ -23,13 +24,16 @@ constexpr Index kMostSteps = 40;
 
 class DenseSolver {
  public:
-  DenseSolver(const Eigen::SparseMatrix<double>& matrix,
-              const CancelToken& cancel)
-      : n_(matrix.rows()), cancel_(cancel), A_(matrix) {}
+  DenseSolver(Eigen::MatrixXd matrix, Index rows, const CancelToken& cancel)
+      : n_(matrix.rows()),
+        rows_(rows),
+        cancel_(cancel),
+        A_(std::move(matrix)) {}
 
-  absl::StatusOr<MatrixPairs> Solve(int pairs) {
+  absl::StatusOr<MatrixPairs> Solve(Index pairs) {
     MARROW_RETURN_IF_ERROR(Tridiagonalise());
-    MARROW_RETURN_IF_ERROR(MultiplyReflections());
+    MARROW_RETURN_IF_ERROR(rows_ == n_ ? MultiplyReflections()
+                                       : ReflectLastRows());
     MARROW_RETURN_IF_ERROR(Diagonalise());
     return Lowest(pairs);
   }
@@ -71,6 +75,20 @@ class DenseSolver {
       auto corner = Q_.bottomRightCorner(m, m);
       const Eigen::RowVectorXd along = v.transpose() * corner;
       corner.noalias() -= (2 * v) * along;
+    }
+    return absl::OkStatus();
+  }
+
+  // The last rows of Q, of which the first reflections are the first factors.
+  absl::Status ReflectLastRows() {
+    Q_.setZero(rows_, n_);
+    Q_.rightCols(rows_).setIdentity();
+    for (Index k = 0; k + 1 < n_; ++k) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      const Index m = n_ - k - 1;
+      const auto v = A_.col(k).tail(m);
+      const Eigen::VectorXd along = Q_.rightCols(m) * v;
+      Q_.rightCols(m).noalias() -= (2 * along) * v.transpose();
     }
     return absl::OkStatus();
   }
@@ -130,7 +148,7 @@ class DenseSolver {
     }
   }
 
-  MatrixPairs Lowest(int pairs) const {
+  MatrixPairs Lowest(Index pairs) const {
     std::vector<Index> order(n_);
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) {
@@ -141,6 +159,7 @@ class DenseSolver {
   }
 
   const Index n_;
+  const Index rows_;  // of Q, the last ones
   const CancelToken& cancel_;
   Eigen::MatrixXd A_;         // its lower half; then the reflections
   Eigen::VectorXd diagonal_;  // of T
@@ -153,7 +172,13 @@ class DenseSolver {
 absl::StatusOr<MatrixPairs> SolveDensely(
     const Eigen::SparseMatrix<double>& matrix, int pairs,
     const CancelToken& cancel) {
-  return DenseSolver(matrix, cancel).Solve(pairs);
+  return DenseSolver(matrix, matrix.rows(), cancel).Solve(pairs);
+}
+
+absl::StatusOr<MatrixPairs> SolveForLastRows(Eigen::MatrixXd matrix, Index rows,
+                                             const CancelToken& cancel) {
+  const Index n = matrix.rows();
+  return DenseSolver(std::move(matrix), rows, cancel).Solve(n);
 }
 
 }  // namespace marrow

@@ -16,6 +16,14 @@ struct MatrixPairs {
   Eigen::MatrixXd vectors;
 };
 
+// All pairs of a symmetric matrix, of which only the lower half is read, with
+// the last `rows` rows of the vectors alone: O(n^3), but a small one where
+// these are few. Deterministic. Errors: CANCELLED; INTERNAL with reason
+// SOLVER_NOT_CONVERGED.
+absl::StatusOr<MatrixPairs> SolveForLastRows(Eigen::MatrixXd matrix,
+                                             Eigen::Index rows,
+                                             const CancelToken& cancel);
+
 // All pairs by a dense solver, of which the lowest are returned. O(n^3).
 // Deterministic. Errors: CANCELLED; INTERNAL with reason SOLVER_NOT_CONVERGED.
 absl::StatusOr<MatrixPairs> SolveDensely(

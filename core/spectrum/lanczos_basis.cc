@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -9,7 +10,9 @@ namespace marrow {
 namespace {
 
 // Rows worked on at once: what the blocks have of them stays in the cache.
-constexpr int kChunk = 512;
+constexpr int kChunk = 256;
+// The same for all blocks of a basis.
+constexpr int kSmallChunk = 64;
 // Squared lengths below this share are rounding of what was subtracted, and
 // those below the second of other columns of the block.
 constexpr double kVanished = 1e-26;
@@ -32,11 +35,12 @@ int PartBegin(int n, int part) {
 
 // body(rows, offset of the first of them in a block), until cancelled.
 template <typename Body>
-void ForChunks(int n, int part, const CancelToken& cancel, const Body& body) {
+void ForChunks(int n, int part, int chunk, const CancelToken& cancel,
+               const Body& body) {
   const int end = PartBegin(n, part + 1);
   for (int begin = PartBegin(n, part); begin < end && !cancel.IsCancelled();
-       begin += kChunk)
-    body(std::min(kChunk, end - begin), static_cast<size_t>(begin) * kBlock);
+       begin += chunk)
+    body(std::min(chunk, end - begin), static_cast<size_t>(begin) * kBlock);
 }
 
 RowMajorMatrix Sum(const std::vector<RowMajorMatrix>& parts) {
@@ -65,7 +69,7 @@ void LanczosBasis::FillRandomly(double* W, uint64_t seed) const {
 
 void LanczosBasis::Copy(int index, double* W) const {
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, CancelToken(), [&](int rows, size_t at) {
+    ForChunks(n_, part, kChunk, CancelToken(), [&](int rows, size_t at) {
       std::memcpy(W + at, blocks_[index].data() + at,
                   sizeof(double) * rows * kBlock);
     });
@@ -77,7 +81,7 @@ RowMajorMatrix LanczosBasis::Project(int first, const double* W,
   std::vector<RowMajorMatrix> sums(kParts,
                                    RowMajorMatrix::Zero(dimension(), kBlock));
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
+    ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
       for (int j = first; j < num_blocks_; ++j)
         kernels_.multiply_add(
             kBlock, kBlock, rows, {blocks_[j].data() + at, 1, kBlock}, W + at,
@@ -92,12 +96,12 @@ RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
                                              const CancelToken& cancel) const {
   std::vector<RowMajorMatrix> sums(kParts,
                                    RowMajorMatrix::Zero(kBlock, kBlock));
+  const std::vector<const double*> V = Pointers();
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
-      for (int j = first; j < num_blocks_; ++j)
-        kernels_.multiply_subtract(
-            rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
-            C.data() + j * kBlock * kBlock, kBlock, W + at, kBlock);
+    ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
+      kernels_.blocks_subtract(rows, num_blocks_ - first, V.data() + first, at,
+                               C.data() + first * kBlock * kBlock, kBlock,
+                               W + at);
       kernels_.multiply_add(kBlock, kBlock, rows, {W + at, 1, kBlock}, W + at,
                             kBlock, sums[part].data(), kBlock);
     });
@@ -105,10 +109,45 @@ RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
   return Sum(sums);
 }
 
+// The overlaps are so small that what is orthonormal stays so without them.
+absl::Status LanczosBasis::SeparateLastTwo(const CancelToken& cancel) {
+  const int before = num_blocks_ - 2;
+  const std::vector<const double*> V = Pointers();
+  std::array<double*, 2> last{Block(before), Block(before + 1)};
+  std::array<std::vector<RowMajorMatrix>, 2> sums;
+  for (auto& sum : sums)
+    sum.assign(kParts, RowMajorMatrix::Zero(before * kBlock, kBlock));
+  // What is read of a block serves both.
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
+      for (int j = 0; j < before; ++j)
+        for (int w = 0; w < 2; ++w)
+          kernels_.multiply_add(
+              kBlock, kBlock, rows, {V[j] + at, 1, kBlock}, last[w] + at,
+              kBlock, sums[w][part].data() + j * kBlock * kBlock, kBlock);
+    });
+  });
+  const std::array<RowMajorMatrix, 2> C{Sum(sums[0]), Sum(sums[1])};
+  team_.For(kParts, [&](int part) {
+    ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
+      for (int w = 0; w < 2; ++w)
+        kernels_.blocks_subtract(rows, before, V.data(), at, C[w].data(),
+                                 kBlock, last[w] + at);
+    });
+  });
+  return cancel.Check();
+}
+
+std::vector<const double*> LanczosBasis::Pointers() const {
+  std::vector<const double*> pointers;
+  for (const AlignedBuffer& block : blocks_) pointers.push_back(block.data());
+  return pointers;
+}
+
 void LanczosBasis::MultiplyInPlace(const RowMajorMatrix& B, double* W) const {
   team_.For(kParts, [&](int part) {
     alignas(64) double copy[kChunk * kBlock];
-    ForChunks(n_, part, CancelToken(), [&](int rows, size_t at) {
+    ForChunks(n_, part, kChunk, CancelToken(), [&](int rows, size_t at) {
       const size_t bytes = sizeof(double) * rows * kBlock;
       std::memcpy(copy, W + at, bytes);
       std::memset(W + at, 0, bytes);
@@ -131,16 +170,14 @@ absl::Status LanczosBasis::Combine(const RowMajorMatrix& coefficients,
                                    std::span<double* const> Y,
                                    const CancelToken& cancel) const {
   const int ldb = static_cast<int>(coefficients.cols());
+  const std::vector<const double*> V = Pointers();
   team_.For(kParts, [&](int part) {
-    ForChunks(n_, part, cancel, [&](int rows, size_t at) {
-      for (double* out : Y)
-        std::memset(out + at, 0, sizeof(double) * rows * kBlock);
-      for (int j = 0; j < num_blocks_; ++j)
-        for (size_t b = 0; b < Y.size(); ++b)
-          kernels_.multiply_add(
-              rows, kBlock, kBlock, {blocks_[j].data() + at, kBlock, 1},
-              coefficients.data() + j * kBlock * ldb + b * kBlock, ldb,
-              Y[b] + at, kBlock);
+    ForChunks(n_, part, kSmallChunk, cancel, [&](int rows, size_t at) {
+      for (size_t b = 0; b < Y.size(); ++b) {
+        std::memset(Y[b] + at, 0, sizeof(double) * rows * kBlock);
+        kernels_.blocks_add(rows, num_blocks_, V.data(), at,
+                            coefficients.data() + b * kBlock, ldb, Y[b] + at);
+      }
     });
   });
   return cancel.Check();

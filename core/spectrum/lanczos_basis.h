@@ -3,6 +3,7 @@
 #define MARROW_CORE_SPECTRUM_LANCZOS_BASIS_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,14 +40,21 @@ class LanczosBasis {
   struct Growth {
     RowMajorMatrix projection;  // dimension() before x kBlock
     RowMajorMatrix remainder;   // kBlock x kBlock
+    bool is_to_all = false;     // the block is orthogonal to all before it
   };
-  // Makes of W = Block(num_blocks()) the next block of the basis. Directions
-  // that W does not have are filled by `fill(Z)`, which writes a block of
-  // vectors to be used instead and returns a status. Errors: CANCELLED; those
-  // of `fill`.
-  template <typename Fill>
-  absl::Status Append(const Fill& fill, const CancelToken& cancel,
-                      Growth& growth);
+  // Makes of W = Block(num_blocks()) the next block of the basis, orthogonal to
+  // the last two, and to all where rounding makes it necessary or where
+  // `wants_all(growth)`, asked when `growth` is about what it will be, says so.
+  // Directions that W does not have are filled by `fill(Z)`, which writes a
+  // block of vectors to be used instead and returns a status. Errors:
+  // CANCELLED; those of `fill`.
+  template <typename Fill, typename WantsAll>
+  absl::Status Append(const Fill& fill, const WantsAll& wants_all,
+                      const CancelToken& cancel, Growth& growth);
+
+  // Makes the last two blocks orthogonal to those before them, with which they
+  // overlap by little: the square of it is nothing. Errors: CANCELLED.
+  absl::Status SeparateLastTwo(const CancelToken& cancel);
 
   // Y = V * coefficients, a block for every kBlock columns of these. Errors:
   // CANCELLED.
@@ -61,6 +69,7 @@ class LanczosBasis {
                          const CancelToken& cancel) const;
   RowMajorMatrix SubtractAndGram(int first, const RowMajorMatrix& C, double* W,
                                  const CancelToken& cancel) const;
+  std::vector<const double*> Pointers() const;
   void MultiplyInPlace(const RowMajorMatrix& B, double* W) const;
   void ReplaceColumns(const std::vector<bool>& which, const double* Z,
                       double* W) const;
@@ -84,21 +93,27 @@ struct Orthonormaliser {
 };
 // Orthogonality is kept to about this times the rounding unit.
 inline constexpr double kMostMagnification = 1e5;
+// A fill that has something new is all it takes, as nearly any has.
+inline constexpr int kMostFills = 2;
+// Below this one pass does.
+inline constexpr double kLittleMagnification = 100;
 // `size` is the squared length that each column had before it was projected:
 // what is tiny beside it is rounding.
 Orthonormaliser MakeOrthonormaliser(const RowMajorMatrix& gram,
                                     const Eigen::VectorXd& size);
 
-template <typename Fill>
-absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
-                                  Growth& growth) {
+template <typename Fill, typename WantsAll>
+absl::Status LanczosBasis::Append(const Fill& fill, const WantsAll& wants_all,
+                                  const CancelToken& cancel, Growth& growth) {
   double* W = Block(num_blocks_);
   growth.remainder = RowMajorMatrix::Identity(kBlock, kBlock);
   growth.projection = RowMajorMatrix::Zero(dimension(), kBlock);
-  // The first pass is against all blocks. The second is against W itself, and
-  // against all where the first has magnified rounding; the others follow a
-  // fill.
-  int passes = 2, first = 0;
+  growth.is_to_all = num_blocks_ <= 2;
+  const int near = std::max(0, num_blocks_ - 2);
+  // The first pass takes away nearly all, and often is enough. What is left is
+  // too small for the second to be led astray by vectors of the basis that
+  // overlap a little. The others follow a fill.
+  int passes = 2, first = near, fills = 0;
   for (int pass = 0; pass < passes; ++pass) {
     const RowMajorMatrix C = Project(first, W, cancel);
     const RowMajorMatrix gram = SubtractAndGram(first, C, W, cancel);
@@ -108,10 +123,15 @@ absl::Status LanczosBasis::Append(const Fill& fill, const CancelToken& cancel,
     growth.projection += C * growth.remainder;
     growth.remainder = q.R * growth.remainder;
     MultiplyInPlace(q.B, W);
-    first = q.magnification < kMostMagnification ? num_blocks_ : 0;
-    if (q.complete || pass > 1) continue;
-    passes = 4;
-    first = 0;
+    growth.is_to_all = growth.is_to_all || !q.complete ||
+                       q.magnification > kMostMagnification ||
+                       (pass == 0 && wants_all(growth));
+    first = growth.is_to_all ? 0 : near;
+    if (pass == 0 && q.complete && first == near &&
+        q.magnification < kLittleMagnification)
+      break;
+    if (q.complete || fills++ == kMostFills) continue;
+    passes = pass + 3;
     double* Z = Block(num_blocks_ + 1);
     if (absl::Status status = fill(Z); !status.ok()) return status;
     ReplaceColumns(q.missing, Z, W);

@@ -17,6 +17,11 @@ constexpr double kFirstDistance = 10;
 // Pairs below a shift that are too many or too few for a band, in bands.
 constexpr double kTooMany = 1.1;
 constexpr double kTooFew = 0.3;
+// A band's steps grow with its larger side: with fewer pairs than this on
+// either, in bands, another shift is looked for, which costs as much as a step
+// or two; but not more often than so.
+constexpr double kSmallSide = 0.38;
+constexpr int kBalancings = 1;
 // Pairs of the first band, and of the usual ones. Small problems are cheap to
 // factorise, and then the dense work on a basis is most of it; of large ones
 // the basis is most of the memory.
@@ -81,12 +86,23 @@ absl::Status ShiftGrid::Settle(int wanted, SupernodalFactor& factor, Team& team,
   cluster_end = 0;
   dense_above = false;
   double low = last_shift_, high = kInfinity, shift = Guess(wanted);
+  // Pairs between the shift before and those that are asked for.
+  const int ahead = covered_ - last_below_;
   int high_count = 0, low_count = covered_;
+  // The first band is small.
+  int balancings = covered_ > 0 ? kBalancings : 0;
   for (int i = 0; i < kMostTries; ++i) {
     MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, team, cancel));
     const int found = factor.negative_pivots() - covered_;
     const bool too_many = found > kTooMany * wanted;
-    if (!too_many && found >= kTooFew * wanted) return absl::OkStatus();
+    if (!too_many && found >= kTooFew * wanted) {
+      const int least = static_cast<int>(kSmallSide * wanted);
+      if (std::min(found, wanted - found) >= least || balancings-- == 0)
+        return absl::OkStatus();
+      shift = last_shift_ +
+              (shift - last_shift_) * (0.5 * wanted + ahead) / (found + ahead);
+      continue;
+    }
     if (too_many) {
       high = shift;
       high_count = factor.negative_pivots();

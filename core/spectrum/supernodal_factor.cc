@@ -3,6 +3,11 @@
 // it works on the transpose, upper and row-major: what is below a pivot's
 // column is to the right of its row, contiguous.
 //
+// A solve is a walk through memory: what a factor has is read once down and
+// once up, and a CPU does little with it. So the triangles are inverted and
+// multiplied into what is below them, and all is kept as the solves read it:
+// products of matrices alone, from the first double to the last.
+//
 // Why no pivoting: it would change the structure with the shift. The matrices
 // are positive definite but for as many directions as eigenvalues are below the
 // shift; those show up in the last, largest fronts. What growth there is, the
@@ -20,12 +25,12 @@
 namespace marrow {
 namespace {
 
-// Rows eliminated before what is below is updated, and before what is left of
-// these rows is.
-constexpr int kBlockRows = 64;
+// Rows of a block that are eliminated before the others of it are updated.
 constexpr int kStepRows = 8;
 // Rows of the trailing triangle updated at a time.
 constexpr int kTileRows = 32;
+// Columns of a block's rows worked on at a time; a multiple of kPad.
+constexpr int kTileColumns = 128;
 constexpr double kLeastPivot = 1e-14;
 
 int PadDown(int n) { return n / kPad * kPad; }
@@ -42,7 +47,7 @@ size_t UpdateSize(const SupernodalStructure::Supernode& node) {
 SupernodalFactor::SupernodalFactor(const SupernodalStructure& structure)
     : structure_(structure),
       kernels_(Kernels()),
-      panels_(structure.panel_doubles),
+      packed_(structure.packed_doubles),
       inverse_pivots_(structure.n),
       branches_(structure.branches.size()) {}
 
@@ -84,9 +89,9 @@ absl::Status SupernodalFactor::EliminateRun(int begin, int end, Workspace& work,
 
 void SupernodalFactor::Assemble(int index, Workspace& work) {
   const Supernode& node = structure_.supernodes[index];
-  double* panel = panels_.data() + node.panel;
-  std::memset(panel, 0, node.PanelSize() * sizeof(double));
+  work.panel.assign(node.PanelSize(), 0.0);
   work.front.assign(UpdateSize(node), 0.0);
+  double* panel = work.panel.data();
   for (size_t e = structure_.row_start[node.first];
        e < structure_.row_start[node.first + node.width]; ++e)
     panel[structure_.offsets[e]] = structure_.values[e];
@@ -97,22 +102,24 @@ void SupernodalFactor::Assemble(int index, Workspace& work) {
       if (branch.waiting.empty()) continue;
       const Supernode& root = structure_.supernodes[branch.waiting.back()];
       if (root.parent == index)
-        AddUpdate(root, branch.stack.data(), node, work.front.data());
+        AddUpdate(root, branch.stack.data(), node, work);
     }
   while (!work.waiting.empty() &&
          structure_.supernodes[work.waiting.back()].parent == index) {
     const Supernode& child = structure_.supernodes[work.waiting.back()];
     const size_t rest = work.stack.size() - UpdateSize(child);
-    AddUpdate(child, work.stack.data() + rest, node, work.front.data());
+    AddUpdate(child, work.stack.data() + rest, node, work);
     work.stack.resize(rest);
     work.waiting.pop_back();
   }
 }
 
 void SupernodalFactor::AddUpdate(const Supernode& child, const double* update,
-                                 const Supernode& parent, double* front) {
+                                 const Supernode& parent,
+                                 Workspace& work) const {
   const int* to = structure_.relative.data() + child.rows;
-  double* panel = panels_.data() + parent.panel;
+  double* panel = work.panel.data();
+  double* front = work.front.data();
   const int own = parent.OwnWidth(), count = child.num_rows;
   const size_t stride = parent.PanelStride();
   const size_t front_stride = PadUp(parent.num_rows);
@@ -129,31 +136,31 @@ absl::Status SupernodalFactor::Eliminate(const Supernode& node, Workspace& work,
                                          Team& team,
                                          const CancelToken& cancel) {
   const size_t stride = node.PanelStride();
-  double* panel = panels_.data() + node.panel;
-  work.scaled.resize(
-      std::max(work.scaled.size(), std::min(kBlockRows, node.width) * stride));
-  for (int begin = 0; begin < node.width; begin += kBlockRows) {
+  double* packed = packed_.data() + node.packed;
+  work.scaled.resize(std::max(work.scaled.size(),
+                              std::min(kBlockColumns, node.width) * stride));
+  for (int begin = 0; begin < node.width; begin += kBlockColumns) {
     MARROW_RETURN_IF_ERROR(cancel.Check());
-    const int end = std::min(begin + kBlockRows, node.width);
+    const int end = std::min(begin + kBlockColumns, node.width);
     for (int step = begin; step < end; step += kStepRows)
       MARROW_RETURN_IF_ERROR(EliminateStep(
-          node, step, std::min(step + kStepRows, end), end,
-          work.scaled.data() + (step - begin) * stride, work.negative_pivots));
+          node, step, std::min(step + kStepRows, end), end, work));
     UpdateBelow(node, begin, end, work, team);
-    std::memcpy(panel + begin * stride, work.scaled.data(),
-                (end - begin) * stride * sizeof(double));
+    InvertTriangle(node, begin, end, work, team);
+    packed = Pack(node, begin, end, work.scaled.data(), packed);
   }
   return absl::OkStatus();
 }
 
 // Rows `begin` up to `end`; then these are subtracted from the other rows of
-// their block. `scaled` receives the rows over their pivots.
+// their block. work.scaled receives the rows over their pivots.
 absl::Status SupernodalFactor::EliminateStep(const Supernode& node, int begin,
                                              int end, int block_end,
-                                             double* scaled,
-                                             int& negative_pivots) {
+                                             Workspace& work) {
   const int stride = node.PanelStride();
-  double* panel = panels_.data() + node.panel;
+  double* panel = work.panel.data();
+  double* scaled =
+      work.scaled.data() + static_cast<size_t>(begin % kBlockColumns) * stride;
   for (int k = begin; k < end; ++k) {
     double* row = panel + static_cast<size_t>(k) * stride;
     const double pivot = row[k];
@@ -162,7 +169,7 @@ absl::Status SupernodalFactor::EliminateStep(const Supernode& node, int begin,
     if (!(std::abs(pivot) > kLeastPivot * std::abs(scale)))
       return absl::FailedPreconditionError(
           absl::StrCat("no pivot at the shift ", shift_));
-    negative_pivots += pivot < 0;
+    work.negative_pivots += pivot < 0;
     const double inverse = 1 / pivot;
     inverse_pivots_[node.first + k] = inverse;
     double* out = scaled + static_cast<size_t>(k - begin) * stride;
@@ -185,7 +192,7 @@ void SupernodalFactor::UpdateBelow(const Supernode& node, int begin, int end,
                                    Workspace& work, Team& team) {
   const int stride = node.PanelStride(), own = node.OwnWidth();
   const int front_stride = PadUp(node.num_rows);
-  double* panel = panels_.data() + node.panel;
+  double* panel = work.panel.data();
   const double* rows = panel + static_cast<size_t>(begin) * stride;
   const double* scaled = work.scaled.data();
   const int own_tiles = (node.width - end + kTileRows - 1) / kTileRows;
@@ -214,6 +221,71 @@ void SupernodalFactor::UpdateBelow(const Supernode& node, int begin, int end,
   }
 }
 
+// With T' the unit triangle of the block: its rows become T'^-1 times
+// themselves, and the triangle T'^-1.
+void SupernodalFactor::InvertTriangle(const Supernode& node, int begin, int end,
+                                      Workspace& work, Team& team) const {
+  const int stride = node.PanelStride(), count = end - begin;
+  double triangle[kBlockColumns * kBlockColumns];
+  for (int i = 0; i < count; ++i) {
+    double* own = work.scaled.data() + static_cast<size_t>(i) * stride + begin;
+    std::copy_n(own, count, triangle + i * kBlockColumns);
+    std::fill_n(own, count, 0.0);
+    own[i] = 1;
+  }
+  const auto solve = [&](int from, int columns) {
+    double* rows = work.scaled.data() + from;
+    const auto subtract = [&](int first, int last, int used, int used_end) {
+      kernels_.multiply_subtract(
+          last - first, columns, used_end - used,
+          {triangle + first * kBlockColumns + used, kBlockColumns, 1},
+          rows + static_cast<size_t>(used) * stride, stride,
+          rows + static_cast<size_t>(first) * stride, stride);
+    };
+    for (int step = (count - 1) / kStepRows * kStepRows; step >= 0;
+         step -= kStepRows) {
+      const int step_end = std::min(step + kStepRows, count);
+      subtract(step, step_end, step_end, count);
+      for (int i = step_end - 1; i-- > step;)
+        subtract(i, i + 1, i + 1, step_end);
+    }
+  };
+  const int first = PadDown(begin);
+  const int tiles = (stride - first + kTileColumns - 1) / kTileColumns;
+  const auto solve_tile = [&](int tile) {
+    const int from = first + tile * kTileColumns;
+    solve(from, std::min(kTileColumns, stride - from));
+  };
+  if (static_cast<double>(count) * count * stride > kTeamWork) {
+    team.For(tiles, solve_tile);
+  } else {
+    for (int tile = 0; tile < tiles; ++tile) solve_tile(tile);
+  }
+}
+
+// Returns where the next block begins.
+double* SupernodalFactor::Pack(const Supernode& node, int begin, int end,
+                               const double* scaled, double* out) const {
+  const size_t stride = node.PanelStride();
+  const int count = end - begin;
+  const auto pack_tile = [&](int column, int rows, int columns) {
+    for (int l = 0; l < columns; ++l)
+      for (int r = 0; r < kTile; ++r)
+        *out++ = r < rows ? scaled[l * stride + column + r] : 0;
+  };
+  const auto pack = [&](int column, int rows) {
+    for (int i = 0; i < rows; i += kTile)
+      pack_tile(column + i, rows - i, count);
+  };
+  const int below = node.num_rows - node.top_rows;
+  pack(end, node.width - end);
+  pack(node.OwnWidth(), below);
+  pack(node.OwnWidth() + below, node.top_rows);
+  for (int i = (count - 1) / kTile * kTile; i >= 0; i -= kTile)
+    pack_tile(begin + i, count - i, TriangleTileColumns(count, i));
+  return out;
+}
+
 void SupernodalFactor::PushUpdate(int index, Workspace& work) const {
   const Supernode& node = structure_.supernodes[index];
   work.stack.insert(work.stack.end(), work.front.begin(),
@@ -223,31 +295,47 @@ void SupernodalFactor::PushUpdate(int index, Workspace& work) const {
 
 void SupernodalFactor::SolveDown(const Supernode& node, double* X,
                                  double* top) const {
-  const double* panel = panels_.data() + node.panel;
-  double* own = X + static_cast<size_t>(node.first) * kBlock;
-  const int stride = node.PanelStride();
-  kernels_.lower_solve(node.width, panel, stride, own);
+  const double* P = packed_.data() + node.packed;
   const int* rows = structure_.rows.data() + node.rows;
   const int below = node.num_rows - node.top_rows;
-  const double* factors = panel + node.OwnWidth();
-  kernels_.scatter_subtract(below, node.width, {factors, 1, stride}, own, X,
-                            rows);
-  kernels_.scatter_subtract(node.top_rows, node.width,
-                            {factors + below, 1, stride}, own, top,
-                            rows + below);
+  for (int begin = 0; begin < node.width; begin += kBlockColumns) {
+    const int end = std::min(begin + kBlockColumns, node.width);
+    const int k = end - begin;
+    double* own = X + static_cast<size_t>(node.first + begin) * kBlock;
+    kernels_.tiles_down(node.width - end, k, P, own,
+                        own + static_cast<size_t>(k) * kBlock, nullptr);
+    P += TilesSize(node.width - end, k);
+    kernels_.tiles_down(below, k, P, own, X, rows);
+    P += TilesSize(below, k);
+    kernels_.tiles_down(node.top_rows, k, P, own, top, rows + below);
+    P += TilesSize(node.top_rows, k);
+    kernels_.triangle_down(k, P, own);
+    P += TriangleSize(k);
+  }
 }
 
 void SupernodalFactor::SolveUp(const Supernode& node, double* X) const {
-  const double* panel = panels_.data() + node.panel;
-  double* own = X + static_cast<size_t>(node.first) * kBlock;
-  const int stride = node.PanelStride();
-  for (int i = 0; i < node.width; ++i)
-    for (int c = 0; c < kBlock; ++c)
-      own[i * kBlock + c] *= inverse_pivots_[node.first + i];
-  kernels_.gather_subtract(node.width, node.num_rows,
-                           {panel + node.OwnWidth(), stride, 1}, X,
-                           structure_.rows.data() + node.rows, own);
-  kernels_.upper_solve(node.width, panel, stride, own);
+  const double* P = packed_.data() + node.packed + node.PackedSize();
+  const int* rows = structure_.rows.data() + node.rows;
+  const int below = node.num_rows - node.top_rows;
+  alignas(64) double sum[kBlockColumns * kBlock];
+  for (int begin = (node.width - 1) / kBlockColumns * kBlockColumns; begin >= 0;
+       begin -= kBlockColumns) {
+    const int end = std::min(begin + kBlockColumns, node.width);
+    const int k = end - begin;
+    const size_t near = TilesSize(node.width - end, k);
+    const size_t far = TilesSize(below, k);
+    const size_t top = TilesSize(node.top_rows, k);
+    P -= near + far + top + TriangleSize(k);
+    double* own = X + static_cast<size_t>(node.first + begin) * kBlock;
+    std::fill_n(sum, k * kBlock, 0.0);
+    kernels_.tiles_up(node.width - end, k, P,
+                      own + static_cast<size_t>(k) * kBlock, nullptr, sum);
+    kernels_.tiles_up(below, k, P + near, X, rows, sum);
+    kernels_.tiles_up(node.top_rows, k, P + near + far, X, rows + below, sum);
+    kernels_.triangle_up(k, P + near + far + top,
+                         inverse_pivots_.data() + node.first + begin, sum, own);
+  }
 }
 
 // Branches write what they subtract from the top beside it; it is added in

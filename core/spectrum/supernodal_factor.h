@@ -41,6 +41,7 @@ class SupernodalFactor {
   struct Workspace {
     std::vector<double> stack;   // updates on their way up
     std::vector<int> waiting;    // whose they are
+    std::vector<double> panel;   // of the supernode that is eliminated
     std::vector<double> front;   // the update that is being made
     std::vector<double> scaled;  // a block of rows of L'
     int negative_pivots = 0;
@@ -51,14 +52,17 @@ class SupernodalFactor {
                             const CancelToken& cancel);
   void Assemble(int index, Workspace& work);
   void AddUpdate(const Supernode& child, const double* update,
-                 const Supernode& parent, double* front);
+                 const Supernode& parent, Workspace& work) const;
   absl::Status Eliminate(const Supernode& node, Workspace& work, Team& team,
                          const CancelToken& cancel);
   absl::Status EliminateStep(const Supernode& node, int begin, int end,
-                             int block_end, double* scaled,
-                             int& negative_pivots);
+                             int block_end, Workspace& work);
   void UpdateBelow(const Supernode& node, int begin, int end, Workspace& work,
                    Team& team);
+  void InvertTriangle(const Supernode& node, int begin, int end,
+                      Workspace& work, Team& team) const;
+  double* Pack(const Supernode& node, int begin, int end, const double* scaled,
+               double* out) const;
   void PushUpdate(int index, Workspace& work) const;
   // `top` is where the rows of the top are, as if row 0 were there too.
   void SolveDown(const Supernode& node, double* X, double* top) const;
@@ -68,7 +72,7 @@ class SupernodalFactor {
   const DenseKernels& kernels_;
   double shift_ = 0;
   int negative_pivots_ = 0;
-  AlignedBuffer panels_;  // rows of L', unit diagonals implied
+  AlignedBuffer packed_;
   std::vector<double> inverse_pivots_;
   std::vector<Workspace> branches_;
   Workspace top_;

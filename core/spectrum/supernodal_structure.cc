@@ -16,7 +16,7 @@ namespace marrow {
 namespace {
 
 // Subtrees up to this many columns become one supernode.
-constexpr int kLeafColumns = 12;
+constexpr int kLeafColumns = 8;
 // A child is joined to its parent while zeros are at most this share of the
 // panel; under kSmallWidth columns, at most kSmallShare.
 constexpr double kZeroShare = 0.12;
@@ -220,9 +220,7 @@ void PlaceSupernodes(const std::vector<Run>& runs, Structure& s) {
     node.num_rows = run.num_rows;
     node.parent = -1;
     node.rows = rows;
-    node.panel = s.panel_doubles;
     rows += run.num_rows;
-    s.panel_doubles += node.PanelSize();
     s.supernodes.push_back(node);
   }
   s.rows.resize(rows);
@@ -265,6 +263,8 @@ absl::Status FindRows(Structure& s, const CancelToken& cancel) {
       next[k] = first_child[node.parent];
       first_child[node.parent] = k;
     }
+    node.packed = s.packed_doubles;
+    s.packed_doubles += node.PackedSize();
     if (k % 1024 == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
   }
   return absl::OkStatus();
@@ -306,26 +306,32 @@ absl::Status FindOffsets(Structure& s, const CancelToken& cancel) {
   return absl::OkStatus();
 }
 
-// The upper triangle by rows in the new order.
+// The rows in the new order, and the upper triangle of them.
 absl::Status CopyEntries(const Eigen::SparseMatrix<double>& matrix,
                          Structure& s, const CancelToken& cancel) {
   std::vector<int> position(s.n);
   for (int i = 0; i < s.n; ++i) position[s.order[i]] = i;
   s.row_start.assign(s.n + 1, 0);
+  s.all_start.assign(s.n + 1, 0);
+  s.all_columns.reserve(matrix.nonZeros());
+  s.all_values.reserve(matrix.nonZeros());
   std::vector<std::pair<int, double>> row;
   for (int i = 0; i < s.n; ++i) {
     if (i % kCheckEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     row.clear();
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, s.order[i]); it;
          ++it)
-      if (position[it.row()] >= i)
-        row.push_back({position[it.row()], it.value()});
+      row.push_back({position[it.row()], it.value()});
     std::sort(row.begin(), row.end());
     for (const auto& [column, value] : row) {
+      s.all_columns.push_back(column);
+      s.all_values.push_back(value);
+      if (column < i) continue;
       s.columns.push_back(column);
       s.values.push_back(value);
     }
     s.row_start[i + 1] = s.columns.size();
+    s.all_start[i + 1] = s.all_columns.size();
   }
   return absl::OkStatus();
 }
@@ -428,18 +434,19 @@ absl::StatusOr<SupernodalStructure> AnalyseStructure(
   return s;
 }
 
-void SupernodalStructure::SubtractProduct(const double* X, double* Y) const {
-  const DenseKernels& kernels = Kernels();
-  for (int i = 0; i < n; ++i) {
-    const size_t begin = row_start[i];
-    const int count = static_cast<int>(row_start[i + 1] - begin);
-    const size_t at = static_cast<size_t>(i) * kBlock;
-    kernels.gather_subtract(1, count, {values.data() + begin, 0, 1}, X,
-                            columns.data() + begin, Y + at);
-    // The lower triangle; the diagonal, which comes first, is done.
-    kernels.scatter_subtract(count - 1, 1, {values.data() + begin + 1, 1, 0},
-                             X + at, Y, columns.data() + begin + 1);
+size_t SupernodalStructure::Supernode::PackedSize() const {
+  size_t size = 0;
+  for (int begin = 0; begin < width; begin += kBlockColumns) {
+    const int end = std::min(begin + kBlockColumns, width), k = end - begin;
+    size += TilesSize(width - end, k) + TilesSize(num_rows - top_rows, k) +
+            TilesSize(top_rows, k) + TriangleSize(k);
   }
+  return size;
+}
+
+void SupernodalStructure::SubtractProduct(const double* X, double* Y) const {
+  Kernels().sparse_subtract(n, all_start.data(), all_columns.data(),
+                            all_values.data(), X, Y);
 }
 
 }  // namespace marrow

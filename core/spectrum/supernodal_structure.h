@@ -15,11 +15,19 @@
 
 namespace marrow {
 
+// So many columns of a supernode are eliminated at a time, and solved at a
+// time.
+inline constexpr int kBlockColumns = 64;
+
 // Immutable once built; the threads of a solve share it.
 //
-// A supernode is a run of columns with one structure below them. Its panel is
-// the transpose of those columns: a row a column, first the columns' own
-// triangle, padded to a multiple of kPad, then the rows below them, padded too.
+// A supernode is a run of columns with one structure below them. While it is
+// eliminated, it is in a panel, the transpose of those columns: a row a column,
+// first the columns' own triangle, padded to a multiple of kPad, then the rows
+// below them, padded too. What is left of it for the solves is packed: for
+// every kBlockColumns columns, with T their own unit triangle, the tiles of
+// B T^-1, where B has the supernode's later columns, the rows below that are
+// not in the top and those that are, each by themselves; and then T^-1.
 struct SupernodalStructure {
   struct Supernode {
     int first;       // column
@@ -28,13 +36,14 @@ struct SupernodalStructure {
     int num_rows;    // below the columns
     int top_rows;    // of a branch's: as many of them are in the top
     size_t rows;     // where they begin in `rows` and `relative`
-    size_t panel;    // where its panel begins, in doubles
+    size_t packed;   // where its factors begin, in doubles
     size_t entries;  // where its entries begin
     int OwnWidth() const { return PadUp(width); }
     int PanelStride() const { return PadUp(width) + PadUp(num_rows); }
     size_t PanelSize() const {
       return static_cast<size_t>(width) * PanelStride();
     }
+    size_t PackedSize() const;
   };
 
   // A subtree that a thread may have for itself: a run of supernodes.
@@ -59,7 +68,11 @@ struct SupernodalStructure {
   std::vector<int> columns;
   std::vector<double> values;
   std::vector<uint32_t> offsets;  // in the panel of the row's supernode
-  size_t panel_doubles = 0;
+  size_t packed_doubles = 0;
+  // All entries of row i, all_start[i] <= e < all_start[i + 1].
+  std::vector<size_t> all_start;
+  std::vector<int> all_columns;
+  std::vector<double> all_values;
 
   // Y -= A X for one block of vectors.
   void SubtractProduct(const double* X, double* Y) const;

@@ -19,6 +19,8 @@ class Mutator {
   Mutation Run() {
     PickMesh();
     for (uint32_t kinds = 1 + Below(5); kinds > 0; --kinds) Damage();
+    // Later damage may have put a number where there was none.
+    result_.has_nan = mesh().positions.hasNaN();
     return std::move(result_);
   }
 
@@ -98,7 +100,6 @@ class Mutator {
       name = "NaN";
       mesh().positions(AnyVertex(), Below(3)) =
           std::numeric_limits<double>::quiet_NaN();
-      result_.has_nan = true;
     } else {
       return;
     }

@@ -44,6 +44,20 @@ TEST(DenseSolverTest, AgreesWithEigens) {
   }
 }
 
+TEST(DenseSolverTest, TheLastRowsAreThoseOfTheWhole) {
+  const CancelToken cancel;
+  const Eigen::MatrixXd A(SymmetricForm(Icosphere(2)));
+  const MatrixPairs all = *SolveForLastRows(A, A.rows(), cancel);
+  for (int rows : {1, 8}) {
+    const MatrixPairs some = *SolveForLastRows(A, rows, cancel);
+    EXPECT_EQ(some.values, all.values);
+    ASSERT_EQ(some.vectors.rows(), rows);
+    EXPECT_LT(
+        (some.vectors - all.vectors.bottomRows(rows)).cwiseAbs().maxCoeff(),
+        1e-12);
+  }
+}
+
 TEST(DenseSolverTest, TrivialMatrices) {
   const CancelToken cancel;
   for (int n : {1, 2, 5}) {

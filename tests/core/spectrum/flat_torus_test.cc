@@ -236,8 +236,11 @@ void ExpectWhole(const Lattice& sides, size_t count,
          {stepping.UpTo(bound), Solver(torus, 200).UpTo(bound)}) {
       ASSERT_GT(found.size(), end);
       EXPECT_GT(found[end], 1.0001 * bound);
-      EXPECT_GT(all[found.size()], 1.0001 * found.back())
-          << "cut at " << found.size();
+      // What ends where all do ends as they were asked for.
+      if (found.size() < all.size()) {
+        EXPECT_GT(all[found.size()], 1.0001 * found.back())
+            << "cut at " << found.size();
+      }
     }
   }
 }

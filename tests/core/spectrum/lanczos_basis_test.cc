@@ -29,14 +29,15 @@ struct Fixture {
           BlockMap(basis.Block(b), kRows, kBlock);
     return all;
   }
-  LanczosBasis::Growth Append() {
+  LanczosBasis::Growth Append(bool to_all = true) {
     LanczosBasis::Growth growth;
+    const auto wants_all = [&](const LanczosBasis::Growth&) { return to_all; };
     const auto fill = [&](double* Z) {
       ++fills;
       basis.FillRandomly(Z, 77 + fills);
       return absl::OkStatus();
     };
-    EXPECT_TRUE(basis.Append(fill, CancelToken(), growth).ok());
+    EXPECT_TRUE(basis.Append(fill, wants_all, CancelToken(), growth).ok());
     return growth;
   }
   double Disorder() {
@@ -117,6 +118,30 @@ TEST(LanczosBasisTest, MissingDirectionsAreFilled) {
   EXPECT_GT(fixture.fills, 0);
 }
 
+TEST(LanczosBasisTest, ABlockIsOrthogonalToTheLastTwoIfNoMoreIsWanted) {
+  Fixture fixture;
+  for (int b = 0; b < 4; ++b) ExpectGrowth(fixture, Random(b));
+  fixture.Next() = Random(4);
+  const LanczosBasis::Growth growth = fixture.Append(false);
+  EXPECT_FALSE(growth.is_to_all);
+  const Eigen::MatrixXd V = fixture.V();
+  const Eigen::MatrixXd overlap =
+      V.leftCols(4 * kBlock).transpose() * V.rightCols(kBlock);
+  EXPECT_LT(overlap.bottomRows(2 * kBlock).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_GT(overlap.topRows(kBlock).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(LanczosBasisTest, TheLastTwoBlocksAreSeparatedFromTheRest) {
+  Fixture fixture(2);
+  for (int b = 0; b < 6; ++b) ExpectGrowth(fixture, Random(b));
+  for (int b : {4, 5})
+    BlockMap(fixture.basis.Block(b), kRows, kBlock) +=
+        1e-8 * fixture.V().leftCols(kBlock);
+  EXPECT_GT(fixture.Disorder(), 0.9e-8);
+  ASSERT_TRUE(fixture.basis.SeparateLastTwo(CancelToken()).ok());
+  EXPECT_LT(fixture.Disorder(), 1e-14);
+}
+
 TEST(LanczosBasisTest, CombinesAsADenseProduct) {
   Fixture fixture(2);
   for (int b = 0; b < 5; ++b) ExpectGrowth(fixture, Random(b));
@@ -151,7 +176,8 @@ TEST(LanczosBasisTest, StopsWhenCancelled) {
   cancel.Cancel();
   LanczosBasis::Growth growth;
   const auto fill = [](double*) { return absl::OkStatus(); };
-  EXPECT_EQ(fixture.basis.Append(fill, cancel, growth).code(),
+  const auto wants_all = [](const LanczosBasis::Growth&) { return false; };
+  EXPECT_EQ(fixture.basis.Append(fill, wants_all, cancel, growth).code(),
             absl::StatusCode::kCancelled);
   EXPECT_EQ(fixture.basis.num_blocks(), 0);
 }
