@@ -17,8 +17,10 @@ namespace {
 typedef double Register
     __attribute__((vector_size(8 * kLanes), aligned(8), may_alias));
 
-// Registers of a row of a block.
+// Registers of a row of a block, and tiles of rows worked on at once: enough
+// sums that none waits for the one before.
 constexpr int kRow = kBlock / kLanes;
+constexpr int kTogether = kRow == 1 ? 2 : 1;
 
 template <int kRows, int kRegisters, bool kAdd>
 inline void Tile(int k, const double* a, StridedMatrix A, const double* B,
@@ -116,7 +118,7 @@ inline void BlockRows(int count, const double* const* A, size_t at,
 template <bool kAdd>
 inline void Blocks(int m, int count, const double* const* A, size_t at,
                    const double* B, int ldb, double* C) {
-  constexpr int kRows = kBlock == kLanes ? 8 : 4;
+  constexpr int kRows = kTogether * kTile;
   int i = 0;
   for (; i + kRows <= m; i += kRows, at += kRows * kBlock, C += kRows * kBlock)
     BlockRows<kRows, kAdd>(count, A, at, B, ldb, C);
@@ -133,9 +135,6 @@ void BlocksSubtract(int m, int count, const double* const* A, size_t at,
                     const double* B, int ldb, double* C) {
   Blocks<false>(m, count, A, at, B, ldb, C);
 }
-
-// Tiles worked on at once: enough sums that none waits for the one before.
-constexpr int kTogether = kRow == 1 ? 2 : 1;
 
 inline Register* RowOf(double* X, const int* rows, int i) {
   return reinterpret_cast<Register*>(
@@ -154,6 +153,18 @@ void SparseSubtract(int n, const size_t* start, const int* columns,
         sum[v] += values[e] * RowOf(X, columns, static_cast<int>(e))[v];
     for (int v = 0; v < kRow; ++v) RowOf(Y, nullptr, i)[v] -= sum[v];
   }
+}
+
+// body.operator()<tiles>(rows, P, i) for all tiles of P, some at once: `rows`
+// from row i on are there.
+template <typename Body>
+inline void ForTiles(int m, int k, const double* P, const Body& body) {
+  constexpr int kRows = kTogether * kTile;
+  int i = 0;
+  for (; i + kRows <= m; i += kRows, P += static_cast<long>(kRows) * k)
+    body.template operator()<kTogether>(kRows, P, i);
+  for (; i < m; i += kTile, P += static_cast<long>(kTile) * k)
+    body.template operator()<1>(m - i, P, i);
 }
 
 // sum = the product of kTiles tiles with k rows of X.
@@ -191,12 +202,9 @@ inline void TileDown(int rows, int k, const double* P, const double* X,
 
 void TilesDown(int m, int k, const double* P, const double* X, double* C,
                const int* c_rows) {
-  constexpr int kRows = kTogether * kTile;
-  int i = 0;
-  for (; i + kRows <= m; i += kRows, P += static_cast<long>(kRows) * k)
-    TileDown<kTogether>(kRows, k, P, X, C, c_rows, i);
-  for (; i < m; i += kTile, P += static_cast<long>(kTile) * k)
-    TileDown<1>(m - i, k, P, X, C, c_rows, i);
+  ForTiles(m, k, P, [&]<int kTiles>(int rows, const double* tiles, int i) {
+    TileDown<kTiles>(rows, k, tiles, X, C, c_rows, i);
+  });
 }
 
 // sum += or -= the transpose of kTiles tiles times their rows of X.
@@ -239,12 +247,9 @@ inline void TileUp(int rows, int k, const double* P, const double* X,
 
 void TilesUp(int m, int k, const double* P, const double* X, const int* x_rows,
              double* sum) {
-  constexpr int kRows = kTogether * kTile;
-  int i = 0;
-  for (; i + kRows <= m; i += kRows, P += static_cast<long>(kRows) * k)
-    TileUp<kTogether>(kRows, k, P, X, x_rows, i, sum);
-  for (; i < m; i += kTile, P += static_cast<long>(kTile) * k)
-    TileUp<1>(m - i, k, P, X, x_rows, i, sum);
+  ForTiles(m, k, P, [&]<int kTiles>(int rows, const double* tiles, int i) {
+    TileUp<kTiles>(rows, k, tiles, X, x_rows, i, sum);
+  });
 }
 
 // The last rows first: those before them are still what they were.

@@ -91,7 +91,8 @@ struct Orthonormaliser {
   // How much longer a column of W B is than what rounding left of W in it.
   double magnification = 0;
 };
-// Orthogonality is kept to about this times the rounding unit.
+// A block is orthogonal, to those that it was made so to, to about this times
+// the rounding unit.
 inline constexpr double kMostMagnification = 1e5;
 // A fill that has something new is all it takes, as nearly any has.
 inline constexpr int kMostFills = 2;

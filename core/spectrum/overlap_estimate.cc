@@ -1,6 +1,7 @@
 #include "core/spectrum/overlap_estimate.h"
 
 #include <Eigen/LU>
+#include <cstdint>
 #include <limits>
 #include <utility>
 

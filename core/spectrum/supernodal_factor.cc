@@ -92,9 +92,11 @@ void SupernodalFactor::Assemble(int index, Workspace& work) {
   work.panel.assign(node.PanelSize(), 0.0);
   work.front.assign(UpdateSize(node), 0.0);
   double* panel = work.panel.data();
-  for (size_t e = structure_.row_start[node.first];
-       e < structure_.row_start[node.first + node.width]; ++e)
-    panel[structure_.offsets[e]] = structure_.values[e];
+  const uint32_t* offset = structure_.offsets.data() + node.entries;
+  for (int i = node.first; i < node.first + node.width; ++i)
+    for (size_t e = structure_.diagonal[i]; e < structure_.row_start[i + 1];
+         ++e)
+      panel[*offset++] = structure_.values[e];
   for (int i = 0; i < node.width; ++i)
     panel[static_cast<size_t>(i) * node.PanelStride() + i] -= shift_;
   if (index >= structure_.first_top)
@@ -164,8 +166,7 @@ absl::Status SupernodalFactor::EliminateStep(const Supernode& node, int begin,
   for (int k = begin; k < end; ++k) {
     double* row = panel + static_cast<size_t>(k) * stride;
     const double pivot = row[k];
-    const double scale =
-        structure_.values[structure_.row_start[node.first + k]];
+    const double scale = structure_.values[structure_.diagonal[node.first + k]];
     if (!(std::abs(pivot) > kLeastPivot * std::abs(scale)))
       return absl::FailedPreconditionError(
           absl::StrCat("no pivot at the shift ", shift_));

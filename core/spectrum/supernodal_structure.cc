@@ -245,8 +245,9 @@ absl::Status FindRows(Structure& s, const CancelToken& cancel) {
       mark[row] = k;
       *out++ = row;
     };
-    for (size_t e = s.row_start[node.first]; e < s.row_start[end]; ++e)
-      add(s.columns[e]);
+    for (int i = node.first; i < end; ++i)
+      for (size_t e = s.diagonal[i]; e < s.row_start[i + 1]; ++e)
+        add(s.columns[e]);
     for (int child = first_child[k]; child >= 0; child = next[child]) {
       const Structure::Supernode& c = s.supernodes[child];
       for (int i = 0; i < c.num_rows; ++i) add(s.rows[c.rows + i]);
@@ -292,29 +293,29 @@ absl::Status FindRelative(Structure& s, const CancelToken& cancel) {
 }
 
 absl::Status FindOffsets(Structure& s, const CancelToken& cancel) {
-  s.offsets.resize(s.columns.size());
-  for (const Structure::Supernode& node : s.supernodes) {
+  s.offsets.reserve((s.columns.size() + s.n) / 2);
+  for (Structure::Supernode& node : s.supernodes) {
     if (cancel.IsCancelled()) return cancel.Check();
+    node.entries = s.offsets.size();
     for (int i = node.first; i < node.first + node.width; ++i) {
       int cursor = 0;
-      for (size_t e = s.row_start[i]; e < s.row_start[i + 1]; ++e)
-        s.offsets[e] = static_cast<uint32_t>(
+      for (size_t e = s.diagonal[i]; e < s.row_start[i + 1]; ++e)
+        s.offsets.push_back(static_cast<uint32_t>(
             static_cast<size_t>(i - node.first) * node.PanelStride() +
-            PanelColumn(s, node, s.columns[e], cursor));
+            PanelColumn(s, node, s.columns[e], cursor)));
     }
   }
   return absl::OkStatus();
 }
 
-// The rows in the new order, and the upper triangle of them.
+// The rows in the new order.
 absl::Status CopyEntries(const Eigen::SparseMatrix<double>& matrix,
                          Structure& s, const CancelToken& cancel) {
   std::vector<int> position(s.n);
   for (int i = 0; i < s.n; ++i) position[s.order[i]] = i;
   s.row_start.assign(s.n + 1, 0);
-  s.all_start.assign(s.n + 1, 0);
-  s.all_columns.reserve(matrix.nonZeros());
-  s.all_values.reserve(matrix.nonZeros());
+  s.columns.reserve(matrix.nonZeros());
+  s.values.reserve(matrix.nonZeros());
   std::vector<std::pair<int, double>> row;
   for (int i = 0; i < s.n; ++i) {
     if (i % kCheckEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
@@ -324,14 +325,11 @@ absl::Status CopyEntries(const Eigen::SparseMatrix<double>& matrix,
       row.push_back({position[it.row()], it.value()});
     std::sort(row.begin(), row.end());
     for (const auto& [column, value] : row) {
-      s.all_columns.push_back(column);
-      s.all_values.push_back(value);
-      if (column < i) continue;
+      if (column == i) s.diagonal.push_back(s.columns.size());
       s.columns.push_back(column);
       s.values.push_back(value);
     }
     s.row_start[i + 1] = s.columns.size();
-    s.all_start[i + 1] = s.all_columns.size();
   }
   return absl::OkStatus();
 }
@@ -445,8 +443,8 @@ size_t SupernodalStructure::Supernode::PackedSize() const {
 }
 
 void SupernodalStructure::SubtractProduct(const double* X, double* Y) const {
-  Kernels().sparse_subtract(n, all_start.data(), all_columns.data(),
-                            all_values.data(), X, Y);
+  Kernels().sparse_subtract(n, row_start.data(), columns.data(), values.data(),
+                            X, Y);
 }
 
 }  // namespace marrow

@@ -37,7 +37,7 @@ struct SupernodalStructure {
     int top_rows;    // of a branch's: as many of them are in the top
     size_t rows;     // where they begin in `rows` and `relative`
     size_t packed;   // where its factors begin, in doubles
-    size_t entries;  // where its entries begin
+    size_t entries;  // where they begin in `offsets`
     int OwnWidth() const { return PadUp(width); }
     int PanelStride() const { return PadUp(width) + PadUp(num_rows); }
     size_t PanelSize() const {
@@ -62,17 +62,16 @@ struct SupernodalStructure {
   int top_column = 0;         // of the first of those
   std::vector<int> rows;      // ascending within a supernode
   std::vector<int> relative;  // of a row, its column in the parent's panel
-  // The upper triangle with the diagonal, in the new order, by rows: entry e of
-  // row i, row_start[i] <= e < row_start[i + 1], diagonal first.
+  // The matrix in the new order, by rows: entry e of row i, row_start[i] <= e <
+  // row_start[i + 1], ascending; those from diagonal[i] on are in the upper
+  // triangle.
   std::vector<size_t> row_start;
+  std::vector<size_t> diagonal;
   std::vector<int> columns;
   std::vector<double> values;
-  std::vector<uint32_t> offsets;  // in the panel of the row's supernode
+  // Where the upper triangle's entries, row by row, are in their panels.
+  std::vector<uint32_t> offsets;
   size_t packed_doubles = 0;
-  // All entries of row i, all_start[i] <= e < all_start[i + 1].
-  std::vector<size_t> all_start;
-  std::vector<int> all_columns;
-  std::vector<double> all_values;
 
   // Y -= A X for one block of vectors.
   void SubtractProduct(const double* X, double* Y) const;

@@ -103,18 +103,18 @@ class Daemon {
   FILE* err_ = nullptr;
 };
 
-// A call that has begun and takes a tenth of a second or so; with two more
-// halvings of its triangles, a second or two.
+// Depths of a star whose call takes a tenth of a second, and some seconds.
 constexpr int kShort = 4;
 constexpr int kLong = 6;
 
+// A call that has begun.
 class Call {
  public:
-  explicit Call(const std::string& address, int halvings = kShort)
+  explicit Call(const std::string& address, int depth = kShort)
       : stub_(v1::SegmentationService::NewStub(
             grpc::CreateChannel(address, grpc::InsecureChannelCredentials()))) {
     v1::SegmentRequest request;
-    request.mutable_mesh()->set_draco(StarPayload(halvings));
+    request.mutable_mesh()->set_draco(StarPayload(depth));
     reader_ = stub_->Segment(&context_, request);
     v1::SegmentEvent event;
     EXPECT_TRUE(reader_->Read(&event));
