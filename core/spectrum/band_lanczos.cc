@@ -85,8 +85,7 @@ class BandFinder {
     const int most = std::min(matrix_.n - kBlock, 6 * wanted + 40 * kBlock);
     const int first_look =
         std::min(static_cast<int>(kFirstLook * wanted), most - kBlock);
-    int extra = request_.extra_steps;
-    int unseen = 0;
+    int unseen = 0, enough = -1;  // blocks
     while (basis_.dimension() < most) {
       MARROW_RETURN_IF_ERROR(process_.Step());
       on_step();
@@ -94,11 +93,15 @@ class BandFinder {
       if (unseen-- > 0 && basis_.dimension() < most) continue;
       MARROW_RETURN_IF_ERROR(Look(kBlock));
       if (Converged()) {
-        if (extra-- <= 0) return Extract();
+        if (enough < 0) enough = basis_.num_blocks() + request_.extra_steps;
+        if (basis_.num_blocks() >= enough || basis_.dimension() >= most)
+          return Extract();
+        unseen = enough - basis_.num_blocks() - 1;
       } else if (Stagnates()) {
         break;
+      } else {
+        unseen = StepsToGo();
       }
-      unseen = StepsToGo();
     }
     return absl::InternalError(absl::StrCat("the pairs about ", factor_.shift(),
                                             " did not converge in ",

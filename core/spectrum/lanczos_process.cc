@@ -38,6 +38,7 @@ absl::Status LanczosProcess::Append(LanczosBasis::Growth& growth) {
   };
   MARROW_RETURN_IF_ERROR(basis_.Append(
       [this](double* Z) { return FillAnew(Z); }, is_large, cancel_, growth));
+  overlaps_.NoteRounding(growth);
   const Eigen::Index rows = basis_.dimension() - kBlock;
   if (growth.is_to_all) {
     overlaps_.AppendOrthogonal(rows);

@@ -1,6 +1,7 @@
 #include "core/spectrum/overlap_estimate.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -10,10 +11,11 @@ namespace {
 
 using Eigen::Index;
 
-// What rounding leaves of an overlap that was removed, and what a step adds, in
-// units of the largest entry of T: a solve rounds more than a product.
+// What rounding leaves of an overlap that was removed; and what a step adds at
+// least, in units of the largest entry of T, and in units of what shows.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 constexpr double kStepRounding = 8 * std::numeric_limits<double>::epsilon();
+constexpr double kShownRounding = 4;
 
 // Of the same size everywhere, the signs without a pattern, or it would cancel.
 Eigen::MatrixXd Rounding(Index rows, double size) {
@@ -24,6 +26,12 @@ Eigen::MatrixXd Rounding(Index rows, double size) {
     entry = state >> 31 ? size : -size;
   }
   return result;
+}
+
+double Asymmetry(const LanczosBasis::Growth& growth) {
+  if (growth.projection.rows() < kBlock) return 0;
+  const Eigen::MatrixXd last = growth.projection.bottomRows(kBlock);
+  return (last - last.transpose()).cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -38,10 +46,16 @@ Eigen::MatrixXd OverlapEstimate::Next(
   Eigen::MatrixXd next = T.topRows(far) * last_;
   next -= before_ * P.middleRows(far, kBlock);
   next -= last_.topRows(far) * P.bottomRows(kBlock);
-  next += Rounding(far, kStepRounding * T.cwiseAbs().maxCoeff());
+  next += Rounding(far, std::max({kStepRounding * T.cwiseAbs().maxCoeff(),
+                                  kShownRounding * Asymmetry(growth),
+                                  kShownRounding * rounding_}));
   const Eigen::MatrixXd R = growth.remainder;
   overlap.topRows(far) = next * R.inverse();
   return overlap;
+}
+
+void OverlapEstimate::NoteRounding(const LanczosBasis::Growth& growth) {
+  rounding_ = std::max(rounding_, Asymmetry(growth));
 }
 
 void OverlapEstimate::Append(Eigen::MatrixXd overlap) {

@@ -75,6 +75,21 @@ double ShiftGrid::Guess(int wanted) const {
   return last_shift_ + mean_distance_ * (covered_ + wanted / 2 - last_below_);
 }
 
+// Factorises below a cluster that begins at `low`, where `count` eigenvalues
+// are below, and as far from it as can be: near an eigenvalue pivots are tiny,
+// and what many equal ones make of that no refinement mends.
+absl::Status ShiftGrid::FactoriseBelow(double low, int count,
+                                       SupernodalFactor& factor, Team& team,
+                                       const CancelToken& cancel) {
+  for (double back = 0.5 * mean_distance_; back > kClusterWidth * low;
+       back /= 8) {
+    if (low - back <= last_shift_) continue;
+    MARROW_RETURN_IF_ERROR(FactoriseNear(low - back, factor, team, cancel));
+    if (factor.negative_pivots() == count) return absl::OkStatus();
+  }
+  return FactoriseNear(low, factor, team, cancel);
+}
+
 // Moves the shift until the pairs below it that no band finds yet are as many
 // as a band's. Where more than that are too close to be parted, the shift is
 // left below them and `cluster_end` is the count above them, else 0. Where few
@@ -119,8 +134,7 @@ absl::Status ShiftGrid::Settle(int wanted, SupernodalFactor& factor, Team& team,
     }
     if (high - low < kClusterWidth * high) {
       cluster_end = high_count;
-      return too_many ? FactoriseNear(low, factor, team, cancel)
-                      : absl::OkStatus();
+      return FactoriseBelow(low, low_count, factor, team, cancel);
     }
     shift = std::isinf(high) ? last_shift_ + 2 * (shift - last_shift_)
                              : 0.5 * (low + high);

@@ -47,6 +47,8 @@ class ShiftGrid {
  private:
   int NextEnd() const;
   double Guess(int wanted) const;
+  absl::Status FactoriseBelow(double low, int count, SupernodalFactor& factor,
+                              Team& team, const CancelToken& cancel);
   absl::Status Settle(int wanted, SupernodalFactor& factor, Team& team,
                       const CancelToken& cancel, int& cluster_end,
                       bool& dense_above);

@@ -31,7 +31,11 @@
 namespace marrow {
 namespace {
 
+// A band that lacks pairs goes on for so many steps, then for twice as many:
+// members of a cluster beyond what a block has columns come out of rounding, a
+// block of them in about as many steps.
 constexpr int kMostRepairs = 3;
+constexpr int kRepairSteps = 6;
 constexpr auto kReportEvery = std::chrono::milliseconds(20);
 // Pairs that a step brings nearer, as a share of a block, and the usual
 // distance of eigenvalues: for progress alone.
@@ -275,7 +279,7 @@ class Slicer : public SpectrumSlicer {
       if (repair == kMostRepairs)
         return absl::InternalError("the count of the eigenvalues disagrees");
       BandRequest request = found.plan.request;
-      request.extra_steps = repair + 1;
+      request.extra_steps = kRepairSteps << repair;
       MARROW_RETURN_IF_ERROR(
           desk.factor.Compute(found.plan.shift, desk.team, cancel));
       MARROW_ASSIGN_OR_RETURN(

@@ -28,7 +28,9 @@ struct Process {
       basis.FillRandomly(basis.Block(0), 1);
     } else {
       const RowMajorMatrix last = Block(basis.num_blocks() - 1);
-      Block(basis.num_blocks()) = theta.matrix().asDiagonal() * last;
+      RowMajorMatrix next = theta.matrix().asDiagonal() * last;
+      next += disturbance * RowMajorMatrix::Random(kRows, kBlock);
+      Block(basis.num_blocks()) = next;
     }
     LanczosBasis::Growth growth;
     const auto fill = [](double*) { return absl::OkStatus(); };
@@ -56,6 +58,8 @@ struct Process {
     T.bottomRows(kBlock) = growth.projection.transpose();
   }
 
+  // As factors disturb it that are bad.
+  double disturbance = 0;
   Eigen::ArrayXd theta = Eigen::ArrayXd::Zero(kRows);
   std::vector<AlignedBuffer> blocks;
   Team team;
@@ -82,9 +86,29 @@ TEST(OverlapEstimateTest, FollowsTheOverlapThatThereIs) {
     most = std::max(most, truth);
     if (truth > 1e-4) break;
     process.GrowT(growth);
+    estimate.NoteRounding(growth);
     estimate.Append(overlap);
   }
   EXPECT_GT(most, 1e-4);
+}
+
+TEST(OverlapEstimateTest, KnowsOfAnOperatorThatIsDisturbed) {
+  Process process;
+  process.disturbance = 1e-7;
+  OverlapEstimate estimate;
+  estimate.NoteRounding(process.Step(true));
+  estimate.AppendOrthogonal(0);
+  for (int b = 1; b < 7; ++b) {
+    const LanczosBasis::Growth growth = process.Step(false);
+    const Eigen::MatrixXd overlap = estimate.Next(process.T, growth);
+    EXPECT_GT(overlap.cwiseAbs().maxCoeff(), 0.1 * process.Overlap()) << b;
+    if (b > 2) {
+      EXPECT_GT(process.Overlap(), 1e-9) << b;
+    }
+    process.GrowT(growth);
+    estimate.NoteRounding(growth);
+    estimate.Append(overlap);
+  }
 }
 
 TEST(OverlapEstimateTest, StartsAgainFromBlocksThatDoNotOverlap) {
