@@ -43,9 +43,11 @@ constexpr double kFirstLook = 2;
 // unseen.
 constexpr double kUsualRate = 1;
 constexpr double kTrustedShare = 0.8;
-// A basis of more than so many vectors a pair grows by this share between
-// looks, whose cost is cubic: many equal eigenvalues take a basis that large.
+// A basis of more than so many vectors a pair, or in all, grows by this share
+// between looks, whose cost is cubic: many equal eigenvalues take a basis that
+// large.
 constexpr int kSlow = 5;
+constexpr int kSlowBasis = 320;
 constexpr int kSlowLooks = 4;
 // From here on a look takes so long that more must come of it.
 constexpr int kLargeBasis = 560;
@@ -159,8 +161,8 @@ class BandFinder {
     last_look_ = basis_.num_blocks();
     last_excess_ = excess;
     const int guess = static_cast<int>(kTrustedShare * excess / rate);
-    const bool slow =
-        basis_.dimension() > kSlow * (request_.below + request_.above);
+    const int wanted = request_.below + request_.above;
+    const bool slow = basis_.dimension() > std::min(kSlow * wanted, kSlowBasis);
     return slow ? std::max(guess, last_look_ / kSlowLooks) : guess;
   }
 

@@ -115,15 +115,24 @@ inline void BlockRows(int count, const double* const* A, size_t at,
     }
 }
 
+// A CPU foresees what is read of no more than so many blocks at a time.
+constexpr int kStreams = 8;
+
 template <bool kAdd>
 inline void Blocks(int m, int count, const double* const* A, size_t at,
                    const double* B, int ldb, double* C) {
   constexpr int kRows = kTogether * kTile;
-  int i = 0;
-  for (; i + kRows <= m; i += kRows, at += kRows * kBlock, C += kRows * kBlock)
-    BlockRows<kRows, kAdd>(count, A, at, B, ldb, C);
-  for (; i < m; ++i, at += kBlock, C += kBlock)
-    BlockRows<1, kAdd>(count, A, at, B, ldb, C);
+  for (int j = 0; j < count; j += kStreams) {
+    const int streams = count - j < kStreams ? count - j : kStreams;
+    const double* b = B + static_cast<long>(j) * kBlock * ldb;
+    const auto rows = [&]<int kCount>(int i) {
+      BlockRows<kCount, kAdd>(streams, A + j, at + i * kBlock, b, ldb,
+                              C + i * kBlock);
+    };
+    int i = 0;
+    for (; i + kRows <= m; i += kRows) rows.template operator()<kRows>(i);
+    for (; i < m; ++i) rows.template operator()<1>(i);
+  }
 }
 
 void BlocksAdd(int m, int count, const double* const* A, size_t at,
