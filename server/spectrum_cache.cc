@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <optional>
@@ -23,7 +24,8 @@ constexpr uint64_t kEntryOverhead = 512;
 bool Reach(const EigenPairs& pairs, uint32_t count, double bound) {
   const uint32_t there = pairs.NumPairs();
   return pairs.complete || there > count ||
-         (there > 0 && pairs.eigenvalues[there - 1] > bound);
+         (there > 0 && pairs.eigenvalues[there - 1] > bound) ||
+         (std::isfinite(bound) && pairs.cluster_end > count);
 }
 
 // Forwards only what rises: a caller that waited for one computation and then
@@ -215,7 +217,10 @@ void SpectrumCache::Land(const Key& key, Flight& flight, Result result) {
     const EigenPairs& pairs = **result;
     const Key holder{key.geometry, pairs.for_any_count ? 0 : key.count};
     const auto entry = entries_.Peek(holder);
-    if (entry == nullptr || entry->NumPairs() < pairs.NumPairs())
+    const auto extent = [](const EigenPairs& of) {
+      return std::pair(of.NumPairs(), of.cluster_end);
+    };
+    if (entry == nullptr || extent(*entry) < extent(pairs))
       entries_.Insert(holder, *result, pairs.Bytes() + kEntryOverhead);
   }
   flight.result = std::move(result);

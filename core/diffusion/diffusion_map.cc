@@ -36,6 +36,14 @@ std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
   return dimension;
 }
 
+uint32_t NumPairsOfWholeClusters(const EigenPairs& pairs) {
+  const uint32_t all = std::max(pairs.NumPairs(), 1u) - 1;
+  const auto& lambda = pairs.eigenvalues;
+  uint32_t whole = all;
+  while (whole > 1 && SameCluster(lambda[whole - 1], lambda[whole])) --whole;
+  return whole == all || pairs.complete ? all : whole - 1;
+}
+
 DiffusionMap BuildDiffusionMap(const EigenPairs& pairs,
                                std::span<const uint32_t> vertices, double t,
                                uint32_t dimension) {

@@ -29,6 +29,10 @@ double TimeScale(const EigenPairs& pairs, double area_share);
 std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
                                      double delta);
 
+// The pairs besides the constant one, but for the last where they are equal and
+// more may follow that are.
+uint32_t NumPairsOfWholeClusters(const EigenPairs& pairs);
+
 // The maps of the given vertices of the mesh, in their order.
 DiffusionMap BuildDiffusionMap(const EigenPairs& pairs,
                                std::span<const uint32_t> vertices, double t,

@@ -169,9 +169,9 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   const Region region(context.mesh, context.adjacency, context.face_areas,
                       faces, context.links);
   const EigenPairs& pairs = *context.pulled.pairs;
-  if (faces.size() < kMinRegionFaces || region.area() <= 0 ||
-      pairs.NumPairs() < 2)
+  if (faces.size() < kMinRegionFaces || region.area() <= 0)
     return Unsplit(StopReason::kTooSmall);
+  if (pairs.NumPairs() < 2) return Unsplit(StopReason::kTooFewEigenPairs);
   const double t = TimeScale(pairs, region.area());
   const std::optional<uint32_t> dimension =
       MapDimension(pairs, t, options.delta);

@@ -75,8 +75,8 @@ absl::Status PreparedBody::Pull(double area_share, double delta,
     if (taken || stream_ == nullptr) break;
     MARROW_RETURN_IF_ERROR(PullUpTo(bound, cancel, progress));
   }
-  const uint32_t all = std::max(pairs->NumPairs(), 1u) - 1;
-  pulled_.usable = std::max(pulled_.usable, taken.value_or(all));
+  pulled_.usable = std::max(pulled_.usable,
+                            taken ? *taken : NumPairsOfWholeClusters(*pairs));
   return absl::OkStatus();
 }
 

@@ -37,6 +37,9 @@ struct EigenPairs {
   // and fewer of them those of whoever asks for fewer. So it is but where very
   // many eigenvalues are equal or most pairs of a mesh are wanted.
   bool for_any_count = true;
+  // Where more than NumPairs(): all those that follow, up to this number at
+  // least, have one eigenvalue, so that no diffusion map can end among them.
+  uint32_t cluster_end = 0;
 
   // Number of pairs, the constant one counted.
   uint32_t NumPairs() const {
@@ -61,9 +64,8 @@ class EigenPairStream {
   virtual ~EigenPairStream() = default;
 
   // All pairs up to the eigenvalue `bound` and at least one beyond it, or as
-  // many as the stream was opened for; more where more are at hand. The
-  // constant pair alone where the bound is 0 and all that follows are more
-  // equal eigenvalues than a band has: no truncation may part those. A longer
+  // many as the stream was opened for; more where more are at hand; fewer where
+  // the bound is finite and cluster_end says that no more are of use. A longer
   // answer begins with the bytes of the shorter ones. Errors: as Get(), and
   // then the stream is not to be used any more.
   virtual absl::StatusOr<std::shared_ptr<const EigenPairs>> UpTo(

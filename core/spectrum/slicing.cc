@@ -19,6 +19,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -97,6 +98,7 @@ class Slicer : public SpectrumSlicer {
       while (!Has(wanted) && (status_.ok() || parts.empty())) {
         MARROW_RETURN_IF_ERROR(status_);
         MARROW_RETURN_IF_ERROR(FindMore(wanted, cancel, report));
+        if (certified_ == bands_.size() && status_.ok()) break;
         while (certified_ < bands_.size()) parts.push_back(NextPart());
       }
     } catch (const std::bad_alloc&) {
@@ -141,7 +143,8 @@ class Slicer : public SpectrumSlicer {
 
   bool Has(const PairsWanted& wanted) const {
     return NumPairs() >= wanted.pairs ||
-           (NumPairs() > 0 && bands_.back()->band.values.back() > wanted.bound);
+           (NumPairs() > 0 && NumPairs() >= wanted.least &&
+            bands_.back()->band.values.back() > wanted.bound);
   }
 
   // At least one band more, or an error in status_. Of the bands at work when
@@ -151,10 +154,11 @@ class Slicer : public SpectrumSlicer {
                         Report& report) {
     const size_t before = bands_.size();
     const auto enough = [&] {
-      return bands_.size() > before &&
-             (grid_.covered() >= wanted.pairs || grid_.Reach() > wanted.bound);
+      return bands_.size() > before && (grid_.covered() >= wanted.pairs ||
+                                        (grid_.covered() >= wanted.least &&
+                                         grid_.Reach() > wanted.bound));
     };
-    const Task task{enough, cancel};
+    const Task task{enough, std::isfinite(wanted.bound), cancel};
     Desk desk(matrix_, options_.threads / workers_);
     sound_ = std::numeric_limits<size_t>::max();
     finished_ = 0;
@@ -179,6 +183,7 @@ class Slicer : public SpectrumSlicer {
 
   struct Task {
     std::function<bool()> enough;  // to be asked under mu_
+    bool stops_at_cluster;  // where it is larger than all that may be asked for
     const CancelToken& cancel;
   };
 
@@ -209,16 +214,15 @@ class Slicer : public SpectrumSlicer {
       absl::MutexLock lock(&mu_);
       if (!status_.ok() || task.enough()) return false;
       index = bands_.size();
-      bands_.push_back(std::make_unique<FoundBand>());
-      found = bands_.back().get();
-      // Each shift depends on the count at the one before, so this is done by
-      // one thread at a time.
-      if (absl::Status status =
-              grid_.Plan(desk.factor, desk.team, task.cancel, found->plan);
-          !status.ok()) {
+      PlannedBand plan;
+      if (absl::Status status = Plan(task, desk, plan); !status.ok()) {
         NoteFailure(std::move(status), index);
         return false;
       }
+      if (cluster_.has_value()) return false;
+      bands_.push_back(std::make_unique<FoundBand>());
+      found = bands_.back().get();
+      found->plan = plan;
     }
     found->counts.push_back({found->plan.shift, found->plan.below_shift});
     absl::StatusOr<Band> band =
@@ -233,6 +237,22 @@ class Slicer : public SpectrumSlicer {
     }
     found->band = *std::move(band);
     return true;
+  }
+
+  // The next band, with desk.factor at its shift, or cluster_. Each shift
+  // depends on the count at the one before, so this is done by one thread at a
+  // time.
+  absl::Status Plan(const Task& task, Desk& desk, PlannedBand& plan)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
+    if (!cluster_.has_value()) {
+      MARROW_RETURN_IF_ERROR(
+          grid_.Plan(desk.factor, desk.team, task.cancel, plan));
+      if (task.stops_at_cluster && plan.request.any_end_above) cluster_ = plan;
+    } else if (!task.stops_at_cluster) {
+      plan = *std::exchange(cluster_, std::nullopt);
+      return desk.factor.Compute(plan.shift, desk.team, task.cancel);
+    }
+    return absl::OkStatus();
   }
 
   void Fail(absl::Status status, size_t band) {
@@ -324,6 +344,8 @@ class Slicer : public SpectrumSlicer {
   const int workers_;  // the threads that have a band each
   absl::Mutex mu_;
   ShiftGrid grid_;  // by one thread at a time, under mu_
+  // The band that is planned next, left to whoever asks without a bound.
+  std::optional<PlannedBand> cluster_;
   std::vector<std::unique_ptr<FoundBand>> bands_;
   size_t certified_ =
       0;  // bands that were handed on, without their vectors now

@@ -25,10 +25,13 @@ struct SlicingOptions {
 };
 
 // Which of the lowest pairs are wanted: all up to `bound` and one beyond it,
-// but no more than `pairs`.
+// but no less than `least` and no more than `pairs`. Who names a bound has no
+// use for a part of a cluster: the pairs then end before more equal eigenvalues
+// than can be asked for.
 struct PairsWanted {
   int pairs = 0;
   double bound = std::numeric_limits<double>::infinity();
+  int least = 0;
 };
 
 // So many eigenvalues are below a shift, by inertia.
@@ -68,7 +71,8 @@ class SpectrumSlicer {
 
   // The parts that follow those found before, until what is wanted is there or
   // the next cannot be found: then the next call has the error, unless it is
-  // one of the first two below. None if what is wanted was there. That no pair
+  // one of the first two below. None if what is wanted was there, or where a
+  // cluster ends the pairs as PairsWanted says. That no pair
   // is missing or twice is certified by the inertia at every shift and beyond
   // the last pair. The same bytes at any number of threads and in whatever
   // steps they are asked for. Errors: CANCELLED; RESOURCE_EXHAUSTED; INTERNAL

@@ -156,7 +156,7 @@ class SolverStream : public EigenPairStream {
   bool Reaches(const EigenPairs& pairs, double bound) const {
     const int there = static_cast<int>(pairs.NumPairs());
     return there == most_ ||
-           (there > 0 && pairs.eigenvalues[there - 1] > bound);
+           (there > 1 && pairs.eigenvalues[there - 1] > bound);
   }
 
   absl::Status Prepare(const CancelToken& cancel) {
@@ -199,12 +199,12 @@ class SolverStream : public EigenPairStream {
       if (progress) progress(kAnalysisShare + (1 - kAnalysisShare) * share);
     };
     while (!Reaches(pairs, bound)) {
-      auto parts = slicer_->Find({most_, bound}, cancel, report);
+      auto parts = slicer_->Find({most_, bound, 2}, cancel, report);
       if (!parts.ok()) return TakeReference(parts.status(), cancel, pairs);
-      // A first band of the constant pair alone is above a bound of 0 to the
-      // slicer. What follows is a cluster too large for a band: nothing that
-      // is worth its time to who asks for as little as can be.
-      if (parts->empty()) break;
+      if (parts->empty()) {
+        pairs.cluster_end = most_;
+        break;
+      }
       for (const SpectrumPart& part : *parts)
         pairs.for_any_count &= !part.of_cluster;
       Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,

@@ -211,6 +211,24 @@ TEST_F(SpectrumCacheTest, AnswersAreThoseOfAColdSolver) {
   }
 }
 
+// What ends before a cluster that is larger than what may be asked for.
+TEST_F(SpectrumCacheTest, PairsThatEndBeforeAClusterAreKept) {
+  SpectrumCache cache(std::make_shared<SolverEigenPairSource>(), 1 << 30);
+  const CanonicalMesh mesh = CanonicalOf(Book(2'000, 1));
+  const auto runs = [&](uint32_t count) {
+    SpectrumUse use;
+    const auto pairs = *cache.Open(mesh, count, use)->UpTo(0, never_, nullptr);
+    EXPECT_EQ(pairs->NumPairs(), 1u);
+    return use.solver_runs;
+  };
+  EXPECT_EQ(runs(60), 1u);
+  EXPECT_EQ(runs(60), 0u);
+  EXPECT_EQ(runs(50), 0u);
+  EXPECT_EQ(runs(70), 1u);
+  EXPECT_EQ(runs(70), 0u);
+  EXPECT_EQ((*Get(cache, mesh, 50))->NumPairs(), 51u);
+}
+
 TEST_F(SpectrumCacheTest, AStreamIsGivenNoMoreThanItWasOpenedFor) {
   auto solver = std::make_shared<CountingStreams>();
   SpectrumCache cache(solver, 1 << 20);

@@ -110,6 +110,14 @@ TEST(MapDimensionTest, NeverSplitsAClusterOfEqualEigenvalues) {
   }
 }
 
+TEST(NumPairsOfWholeClustersTest, LeavesOutAClusterThatMayGoOn) {
+  EXPECT_EQ(NumPairsOfWholeClusters(PairsOf({0, 1, 2, 3}, false)), 3u);
+  EXPECT_EQ(NumPairsOfWholeClusters(PairsOf({0, 1, 2, 2, 2}, false)), 1u);
+  EXPECT_EQ(NumPairsOfWholeClusters(PairsOf({0, 1, 2, 2, 2}, true)), 4u);
+  EXPECT_EQ(NumPairsOfWholeClusters(PairsOf({0, 5, 5}, false)), 0u);
+  EXPECT_EQ(NumPairsOfWholeClusters(PairsOf({0}, false)), 0u);
+}
+
 TEST(MapDimensionTest, TakesTheClustersOfASphereWhole) {
   const auto pairs = Solve(Icosphere(3), 30);
   for (double t = 0.001; t < 1; t *= 1.3) {

@@ -212,17 +212,6 @@ TEST(SolverTest, StreamsGoOnFromWhereTheyAre) {
 
 // Where bands do not come to be, those before are kept, and the rest is taken
 // from the reference solver: whatever the steps, the same bytes.
-// The pages' equal eigenvalues are a cluster behind a band of the constant pair
-// alone, which is above a bound of 0 to the slicer, and not to its caller.
-TEST(SolverTest, StreamsOfAClusterReturnWithWhatIsThere) {
-  const CanonicalMesh mesh = CanonicalOf(Book(2'000, 1));
-  const auto stream = SolverEigenPairSource().Open(mesh, 60);
-  for (int i = 0; i < 3; ++i) {
-    const auto pairs = stream->UpTo(0, CancelToken(), nullptr);
-    ASSERT_TRUE(pairs.ok()) << pairs.status();
-    EXPECT_GE((*pairs)->NumPairs(), 1u);
-  }
-}
 
 TEST(SolverTest, StreamsGoOnFromWhereTheyAreOnTheWayOut) {
   const CancelToken cancel;
@@ -237,6 +226,22 @@ TEST(SolverTest, StreamsGoOnFromWhereTheyAreOnTheWayOut) {
     EXPECT_EQ(pairs->eigenvalues, all->eigenvalues.head(count)) << bound;
     EXPECT_EQ(pairs->eigenvectors, all->eigenvectors.leftCols(count)) << bound;
   }
+}
+
+// The pages' eigenvalues are equal, and more than are asked for.
+TEST(SolverTest, StreamsOfABoundEndBeforeAClusterThatIsTooLarge) {
+  const CancelToken cancel;
+  const CanonicalMesh mesh = CanonicalOf(Book(2'000, 1));
+  SolverEigenPairSource source;
+  const auto stream = source.Open(mesh, 60);
+  for (double bound : {0.0, 0.0, 1e9}) {
+    const auto pairs = *stream->UpTo(bound, cancel, nullptr);
+    EXPECT_EQ(pairs->NumPairs(), 1u);
+    EXPECT_EQ(pairs->cluster_end, 61u);
+  }
+  const auto pairs = *stream->UpTo(HUGE_VAL, cancel, nullptr);
+  ASSERT_EQ(pairs->NumPairs(), 61u);
+  EXPECT_EQ(pairs->eigenvectors, Solve(mesh, 60)->eigenvectors);
 }
 
 TEST(SolverTest, FewPairsAreFoundWithoutTheRest) {
