@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "core/pipeline/pipeline.h"
 #include "core/spectrum/solver.h"
+#include "core/spectrum/strict_solver.h"
 
 namespace marrow {
 
@@ -27,8 +28,10 @@ struct Engine {
   std::shared_ptr<EigenPairSource> solver =
       std::make_shared<SolverEigenPairSource>();
   // For strict spectra.
-  std::shared_ptr<EigenPairSource> strict_solver =
-      std::make_shared<SolverEigenPairSource>(kStrictSolverTolerance);
+  std::function<absl::StatusOr<CertifiedSpectrum>(
+      const CanonicalMesh&, uint32_t count, const CancelToken&,
+      const ProgressCallback&)>
+      solve_strictly = SolveStrictly;
 };
 
 }  // namespace marrow

@@ -1,6 +1,7 @@
 #include "server/spectrum_service.h"
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -32,8 +33,6 @@ struct Work {
   uint32_t eigen_pairs;
   bool eigenvectors;
   bool strict;
-
-  bool Certified() const { return eigenvectors || strict; }
 };
 
 double Seconds(Clock::duration duration) {
@@ -49,35 +48,36 @@ std::string KeyOf(const Work& work) {
   return key.Finish().Hex();
 }
 
-// Strict pairs are in double, which the cache does not keep.
-absl::StatusOr<std::shared_ptr<const EigenPairs>> GetPairs(
-    ServiceContext& context, const Work& work, const CanonicalMesh& mesh,
-    const CancelToken& cancel, const ProgressCallback& progress,
-    SpectrumUse& use) {
-  if (!work.strict) {
-    return context.spectra.Get(mesh, work.eigen_pairs, cancel, progress, use);
-  }
-  use = {.outcome = CacheOutcome::kMiss, .solver_runs = 1};
-  return context.engine.strict_solver->Get(
-      mesh, WithStrictGuards(work.eigen_pairs), cancel, progress);
-}
+// What is done of the call, 0 to 1, as a step of it goes on.
+using ReportSteps = std::function<ProgressCallback(double from, double to)>;
 
-absl::StatusOr<std::shared_ptr<const CertifiedSpectrum>> Certify(
-    const Work& work, const CanonicalMesh& mesh, const EigenPairs& pairs,
-    const CancelToken& cancel, const ProgressCallback& progress) {
-  const double residual = work.strict ? kStrictResidual : kUsualResidual;
-  MARROW_ASSIGN_OR_RETURN(CertifiedSpectrum spectrum,
-                          CertifySpectrum(mesh, pairs, work.eigen_pairs,
-                                          residual, cancel, progress));
-  const double worst = spectrum.residuals.maxCoeff();
-  if (work.strict && !(worst <= residual)) {
+// Strict pairs are in double, which the cache does not keep.
+absl::StatusOr<CertifiedSpectrum> SolveStrict(
+    ServiceContext& context, const Work& work, const CanonicalMesh& mesh,
+    const CancelToken& cancel, const ReportSteps& report, SpectrumUse& use) {
+  use = {.outcome = CacheOutcome::kMiss, .solver_runs = 1};
+  MARROW_ASSIGN_OR_RETURN(
+      CertifiedSpectrum spectrum,
+      context.engine.solve_strictly(mesh, work.eigen_pairs, cancel,
+                                    report(kMeshShare, 1)));
+  if (const double worst = spectrum.residuals.maxCoeff();
+      !(worst <= kStrictResidual)) {
     return WithReason(
         absl::InternalError(absl::StrCat(
-            "a residual is ", worst, " and not at most ", residual,
+            "a residual is ", worst, " and not at most ", kStrictResidual,
             ", as a strict spectrum wants it; ask for a usual one")),
         kReasonSolverNotConverged);
   }
-  return std::make_shared<const CertifiedSpectrum>(std::move(spectrum));
+  return spectrum;
+}
+
+absl::StatusOr<CertifiedSpectrum> CertifyUsual(const Work& work,
+                                               const CanonicalMesh& mesh,
+                                               const EigenPairs& pairs,
+                                               const CancelToken& cancel,
+                                               const ReportSteps& report) {
+  return CertifySpectrum(mesh, pairs, work.eigen_pairs, kUsualResidual, cancel,
+                         report(kSolverShare, 1));
 }
 
 // Everything but the last event.
@@ -85,24 +85,31 @@ absl::StatusOr<std::shared_ptr<const SpectrumEvents>> Solve(
     ServiceContext& context, const Work& work,
     std::shared_ptr<const CanonicalMesh> mesh, SpectrumJob& job,
     SpectrumUse& use) {
-  const auto report = [&job](double from, double to) {
+  const CancelToken& cancel = *job.cancel();
+  const ReportSteps report = [&job](double from, double to) {
     return [&job, from, to](double fraction) {
       job.Progress(v1::STAGE_SPECTRUM, from + (to - from) * fraction);
     };
   };
-  const double solved = work.Certified() ? kSolverShare : 1;
-  MARROW_ASSIGN_OR_RETURN(const auto pairs,
-                          GetPairs(context, work, *mesh, *job.cancel(),
-                                   report(kMeshShare, solved), use));
-  if (!work.Certified()) {
-    return std::make_shared<const SpectrumEvents>(mesh, pairs);
+  CertifiedSpectrum spectrum;
+  if (work.strict) {
+    MARROW_ASSIGN_OR_RETURN(
+        spectrum, SolveStrict(context, work, *mesh, cancel, report, use));
+  } else {
+    MARROW_ASSIGN_OR_RETURN(
+        const auto pairs,
+        context.spectra.Get(
+            *mesh, work.eigen_pairs, cancel,
+            report(kMeshShare, work.eigenvectors ? kSolverShare : 1), use));
+    if (!work.eigenvectors)
+      return std::make_shared<const SpectrumEvents>(mesh, pairs);
+    MARROW_ASSIGN_OR_RETURN(spectrum,
+                            CertifyUsual(work, *mesh, *pairs, cancel, report));
   }
-  MARROW_ASSIGN_OR_RETURN(
-      auto spectrum,
-      Certify(work, *mesh, *pairs, *job.cancel(), report(solved, 1)));
-  use.eigen_pairs = spectrum->NumPairs() - 1;
-  return std::make_shared<const SpectrumEvents>(mesh, std::move(spectrum),
-                                                work.eigenvectors);
+  use.eigen_pairs = spectrum.NumPairs() - 1;
+  return std::make_shared<const SpectrumEvents>(
+      mesh, std::make_shared<const CertifiedSpectrum>(std::move(spectrum)),
+      work.eigenvectors);
 }
 
 absl::Status Compute(ServiceContext& context, const Work& work,

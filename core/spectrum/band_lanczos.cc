@@ -60,6 +60,8 @@ constexpr int kLargeBlocks = 300'000;
 // The estimate of a residual leaves out rounding and the other pairs' share.
 constexpr double kEstimateShare = 0.5;
 constexpr int kMostRefinements = 4;
+// Of the distance of the last pair that is refined.
+constexpr double kRefinedReach = 2;
 
 // Ritz pairs on one side of the shift, the nearest first.
 struct Side {
@@ -288,7 +290,11 @@ class BandFinder {
 
   absl::Status WriteVectors(const RowMajorMatrix& coefficients, Band& band) {
     const size_t count = band.values.size();
-    band.vectors.resize(matrix_.n * count);
+    if (request_.exact) {
+      band.exact_vectors.resize(matrix_.n * count);
+    } else {
+      band.vectors.resize(matrix_.n * count);
+    }
     band.residuals.resize(count);
     const size_t most =
         kBlock * (matrix_.n < kLargeBlocks ? kMostTogether : kLeastTogether);
@@ -305,33 +311,40 @@ class BandFinder {
   }
 
   // Inverse iteration takes away what rounding left of the residuals, which is
-  // much where the entries of the matrix are of very different sizes. Beside
-  // the pairs of the band, all others are iterated that are as near to the
-  // shift: what is left of those in the band's would grow.
+  // much where the entries of the matrix are of very different sizes, and most
+  // beside the shift. Beyond the pairs that need it others are iterated: what
+  // is left of those in them would grow, or shrink too slowly.
   absl::Status Refine(Band& band) {
-    const double reach =
-        std::max(Distance(below_, num_below_), Distance(above_, num_above_));
-    const int low = CountWithin(below_, reach);
-    std::vector<int> chosen(below_.index.rend() - low, below_.index.rend());
-    chosen.insert(chosen.end(), above_.index.begin(),
-                  above_.index.begin() + CountWithin(above_, reach));
-    MARROW_ASSIGN_OR_RETURN(Window window, MakeWindow(chosen));
     for (int i = 0; i < kMostRefinements && Worst(band) > request_.tolerance;
          ++i) {
-      MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
-      MARROW_RETURN_IF_ERROR(TakeVectors(window, low - num_below_, band));
+      const double reach = kRefinedReach * FarthestWanting(band);
+      const int low = CountWithin(below_, reach);
+      std::vector<int> chosen(below_.index.rend() - low, below_.index.rend());
+      chosen.insert(chosen.end(), above_.index.begin(),
+                    above_.index.begin() + CountWithin(above_, reach));
+      MARROW_ASSIGN_OR_RETURN(Window window, MakeWindow(chosen));
+      for (int k = 0; k <= i; ++k)
+        MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
+      MARROW_RETURN_IF_ERROR(TakeVectors(window, num_below_ - low, band));
     }
     return absl::OkStatus();
   }
 
-  // Of the last of `count` pairs from the shift.
-  double Distance(const Side& side, int count) const {
-    return count > 0 ? std::abs(side.value[count - 1] - factor_.shift()) : 0;
+  // How far from the shift the last pair is whose residual is too large.
+  double FarthestWanting(const Band& band) const {
+    double distance = 0;
+    for (size_t k = 0; k < band.values.size(); ++k)
+      if (!(band.residuals[k] <= request_.tolerance))
+        distance =
+            std::max(distance, std::abs(band.values[k] - factor_.shift()));
+    return distance;
   }
 
   int CountWithin(const Side& side, double reach) const {
     int count = 0;
-    while (HasNext(side, count) && Distance(side, count + 1) <= reach) ++count;
+    while (HasNext(side, count) &&
+           std::abs(side.value[count] - factor_.shift()) <= reach)
+      ++count;
     return count;
   }
 
@@ -356,18 +369,20 @@ class BandFinder {
     return window;
   }
 
-  // The band's pairs, from `first` of the window on.
+  // Those that the band has of a window, whose first would be its pair `first`.
   absl::Status TakeVectors(const Window& window, int first, Band& band) {
-    const int count = static_cast<int>(band.values.size());
-    for (int k = 0; k < count; ++k) band.values[k] = window.values[first + k];
+    const int begin = std::max(0, first);
+    const int end = std::min(static_cast<int>(band.values.size()),
+                             first + static_cast<int>(window.values.size()));
+    for (int k = begin; k < end; ++k) band.values[k] = window.values[k - first];
     double* Y = basis_.Block(basis_.num_blocks());
     double* scratch = basis_.Block(basis_.num_blocks() + 1);
     Eigen::Map<RowMajorMatrix> block(Y, matrix_.n, kBlock);
-    for (int begin = 0; begin < count; begin += kBlock) {
+    for (int k = begin; k < end; k += kBlock) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
-      const int width = std::min(kBlock, count - begin);
-      block.leftCols(width) = window.vectors.middleCols(first + begin, width);
-      WriteBlock(begin, Y, scratch, band);
+      const int width = std::min(kBlock, end - k);
+      block.leftCols(width) = window.vectors.middleCols(k - first, width);
+      WriteBlock(k, width, Y, scratch, band);
     }
     return absl::OkStatus();
   }
@@ -386,22 +401,28 @@ class BandFinder {
     for (int b = 0; b < blocks; b += scratch_blocks) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
       team_.For(std::min(scratch_blocks, blocks - b), [&](int i) {
-        WriteBlock(begin + (b + i) * kBlock, Y[b + i], scratch[i], band);
+        const size_t first = begin + (b + i) * kBlock;
+        const size_t count = band.values.size();
+        if (first < count)
+          WriteBlock(first, std::min<size_t>(kBlock, count - first), Y[b + i],
+                     scratch[i], band);
       });
     }
     return absl::OkStatus();
   }
 
-  void WriteBlock(size_t begin, const double* Y, double* residual,
+  void WriteBlock(size_t begin, size_t width, const double* Y, double* residual,
                   Band& band) const {
     const size_t count = band.values.size();
-    if (begin >= count) return;
-    const int width = static_cast<int>(std::min<size_t>(kBlock, count - begin));
     std::array<double, kBlock> lambda{}, sums{};
     std::copy_n(band.values.begin() + begin, width, lambda.begin());
     for (int i = 0; i < matrix_.n; ++i) {
       const double* row = Y + static_cast<size_t>(i) * kBlock;
-      std::copy_n(row, width, &band.vectors[i * count + begin]);
+      if (request_.exact) {
+        std::copy_n(row, width, &band.exact_vectors[i * count + begin]);
+      } else {
+        std::copy_n(row, width, &band.vectors[i * count + begin]);
+      }
       for (int c = 0; c < kBlock; ++c)
         residual[static_cast<size_t>(i) * kBlock + c] = lambda[c] * row[c];
     }
@@ -409,7 +430,7 @@ class BandFinder {
     for (size_t i = 0; i < static_cast<size_t>(matrix_.n); ++i)
       for (int c = 0; c < kBlock; ++c)
         sums[c] += residual[i * kBlock + c] * residual[i * kBlock + c];
-    for (int c = 0; c < width; ++c)
+    for (size_t c = 0; c < width; ++c)
       band.residuals[begin + c] =
           std::sqrt(sums[c]) / std::max(lambda[c], floor_);
   }

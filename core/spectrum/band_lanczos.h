@@ -27,6 +27,8 @@ struct BandRequest {
   bool any_end_above = false;
   // In units of max(lambda, lambda_1), what a residual may be.
   double tolerance = 0;
+  // Whether the vectors are wanted as they are found, in double.
+  bool exact = false;
   // Steps beyond those that seem enough, and another start: for a band that
   // was found to lack a pair.
   int extra_steps = 0;
@@ -41,8 +43,10 @@ struct Band {
   // the end may be anywhere.
   double next_below = 0;
   double next_above = 0;
-  // n x values.size(), row-major, orthonormal before they were rounded.
+  // n x values.size(), row-major, orthonormal to about 1e-8 before they were
+  // rounded; empty where exact ones are wanted, which are there instead.
   std::vector<float> vectors;
+  std::vector<double> exact_vectors;
   // Of each pair before it was rounded, in units of max(lambda, lambda_1).
   std::vector<double> residuals;
 };

@@ -13,10 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
-#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
+#include "core/spectrum/certificate.h"
 #include "core/spectrum/dense_solver.h"
 #include "core/spectrum/inverse_iteration.h"
 #include "core/spectrum/shift_grid.h"
@@ -24,8 +23,6 @@
 namespace marrow {
 namespace {
 
-// Up to this size a dense solver is quicker and more exact.
-constexpr int kDenseVertices = 500;
 // Pairs of a window. Those at the low end have small ones, as what is left of
 // an iteration is in units of the distance to the shift, and a residual in
 // units of the eigenvalue.
@@ -38,48 +35,8 @@ constexpr int kMostGuards = 48;
 constexpr int kMostIterations = 6;
 // An iteration that does not bring the residual below this share was the last.
 constexpr double kWorthwhile = 0.8;
-// Pairs nearer than this share of their value are not told apart by a count.
-constexpr double kCountableGap = 1e-6;
 constexpr size_t kMaxFactorBytes = size_t{4} << 30;
 constexpr double kAnalysisShare = 0.1;
-
-absl::Status Disagreement(double shift, int counted, int found) {
-  return WithReason(absl::InternalError(absl::StrCat(
-                        "the mesh has ", counted, " eigenvalues below ", shift,
-                        ", but ", found, " were found")),
-                    kReasonSolverNotConverged);
-}
-
-absl::Status OutOfMemory(int count, int vertices) {
-  return absl::ResourceExhaustedError(
-      absl::StrCat("not enough memory for ", count,
-                   " eigen-pairs in double of ", vertices, " vertices"));
-}
-
-// The entry of largest magnitude (the first, where several are) is positive.
-void FixSign(Eigen::Ref<Eigen::VectorXd> vector) {
-  Eigen::Index at = 0;
-  vector.cwiseAbs().maxCoeff(&at);
-  if (vector[at] < 0) vector = -vector;
-}
-
-// Measures the pairs [first, end) and gives the largest residual.
-double MeasureResiduals(const Laplacian& laplacian, int first, int end,
-                        CertifiedSpectrum& spectrum) {
-  const double lambda_1 = spectrum.eigenvalues[1];
-  double worst = 0;
-  for (int k = first; k < end; ++k) {
-    const auto phi = spectrum.eigenvectors.col(k);
-    const double lambda = spectrum.eigenvalues[k];
-    const Eigen::VectorXd rest =
-        laplacian.L * phi - lambda * laplacian.M.cwiseProduct(phi);
-    spectrum.residuals[k] =
-        std::sqrt(rest.cwiseAbs2().cwiseQuotient(laplacian.M).sum()) /
-        std::max(lambda, lambda_1);
-    worst = std::max(worst, spectrum.residuals[k]);
-  }
-  return worst;
-}
 
 class Certifier {
  public:
@@ -257,28 +214,16 @@ class Certifier {
     return absl::OkStatus();
   }
 
-  // Counts beyond the last pair; where it has equals there, below it, at the
-  // last gap that a count can tell.
   absl::Status Count() {
     SupernodalFactor factor(structure_);
     Team alone(1);
-    const double margin = kCountableGap * spectrum_.eigenvalues[count_ - 1];
-    int pair = count_;
-    if (pair == pairs_.eigenvalues.size()) {
-      MARROW_RETURN_IF_ERROR(FactoriseNear(
-          spectrum_.eigenvalues[count_ - 1] + margin, factor, alone, cancel_));
-      if (factor.negative_pivots() < count_)
-        return Disagreement(factor.shift(), factor.negative_pivots(), count_);
-      if (factor.negative_pivots() > count_) --pair;
-    }
-    if (pair < pairs_.eigenvalues.size()) {
-      while (pair > 1 && Gap(pair) <= 4 * margin) --pair;
-      MARROW_RETURN_IF_ERROR(FactoriseBelow(pair, factor));
-    }
-    spectrum_.bound = factor.shift();
-    spectrum_.count_below_bound =
-        static_cast<uint32_t>(factor.negative_pivots());
-    return absl::OkStatus();
+    return CountPairs(
+        pairs_.eigenvalues,
+        [&](double shift) -> absl::StatusOr<InertiaCount> {
+          MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, alone, cancel_));
+          return InertiaCount{factor.shift(), factor.negative_pivots()};
+        },
+        spectrum_);
   }
 
   struct WindowRange {
@@ -364,7 +309,7 @@ absl::StatusOr<CertifiedSpectrum> CertifySpectrum(
   const ProgressCallback report = progress ? progress : [](double) {};
   try {
     absl::StatusOr<CertifiedSpectrum> spectrum =
-        n <= kDenseVertices || 2 * count > n
+        IsSolvedDensely(n, count)
             ? CertifyDensely(A, laplacian, count, cancel)
             : CertifySparsely(mesh, pairs, A, laplacian, count, residual,
                               cancel, report);

@@ -4,11 +4,20 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <cstdint>
 
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 
 namespace marrow {
+
+inline constexpr int kDenseVertices = 500;
+
+// Whether `pairs` of n are found by a dense solver: it is quicker for tiny
+// meshes, and the only one for most of the pairs.
+constexpr bool IsSolvedDensely(int n, int pairs) {
+  return n <= kDenseVertices || 2 * int64_t{pairs} > n;
+}
 
 // Pairs of a symmetric matrix: values ascending, vectors orthonormal columns.
 struct MatrixPairs {

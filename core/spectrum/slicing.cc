@@ -107,6 +107,18 @@ class Slicer : public SpectrumSlicer {
     return parts;
   }
 
+  absl::StatusOr<InertiaCount> Count(double shift,
+                                     const CancelToken& cancel) override {
+    try {
+      Team team(options_.threads);
+      SupernodalFactor factor(matrix_);
+      MARROW_RETURN_IF_ERROR(FactoriseNear(shift, factor, team, cancel));
+      return InertiaCount{factor.shift(), factor.negative_pivots()};
+    } catch (const std::bad_alloc&) {
+      return OutOfMemory(matrix_.n);
+    }
+  }
+
  private:
   // Work done as a share of what is expected; approaches 1 without reaching it.
   class Report {
@@ -136,6 +148,7 @@ class Slicer : public SpectrumSlicer {
   static BandRequest CommonRequest(const SlicingOptions& options) {
     BandRequest request;
     request.tolerance = options.tolerance;
+    request.exact = options.exact;
     return request;
   }
 

@@ -19,6 +19,8 @@ struct SlicingOptions {
   int threads = 2;
   // What the residual of a pair may be, in units of max(lambda, lambda_1).
   double tolerance = 1e-4;
+  // Whether bands have their vectors in double.
+  bool exact = false;
   // What one factor may take; there is one a thread, or one in all where two
   // would be too much.
   size_t max_factor_bytes = size_t{1} << 30;
@@ -81,6 +83,12 @@ class SpectrumSlicer {
   virtual absl::StatusOr<std::vector<SpectrumPart>> Find(
       const PairsWanted& wanted, const CancelToken& cancel,
       const ShareCallback& progress) = 0;
+
+  // The eigenvalues below a shift, or a little above it where it is one. Not to
+  // be called during Find(). Errors: CANCELLED; RESOURCE_EXHAUSTED; INTERNAL
+  // where the matrix cannot be factorised.
+  virtual absl::StatusOr<InertiaCount> Count(double shift,
+                                             const CancelToken& cancel) = 0;
 
   // Row of a band's vectors -> unknown of the matrix.
   virtual const std::vector<int>& order() const = 0;

@@ -20,13 +20,8 @@
 namespace marrow {
 namespace {
 
-// Up to this size a dense solver is quicker, and always finds everything.
-constexpr int kDenseVertices = 500;
 // The reference solver is no way out above this size: it would take hours.
 constexpr int kReferenceVertices = 200'000;
-// Pairs are certified up to this count for a mesh of n vertices; above it the
-// dense solver has to do.
-constexpr double kSlicedShare = 0.5;
 // What the analysis is of the whole.
 constexpr double kAnalysisShare = 0.1;
 
@@ -115,13 +110,9 @@ SlicingOptions OptionsFor(double tolerance) {
   return options;
 }
 
-bool IsDense(int n, int pairs) {
-  return n <= kDenseVertices || pairs > kSlicedShare * n;
-}
-
 // Whether other numbers of pairs are solved for in the same way.
 bool IsForAnyCount(int n, int pairs) {
-  return n <= kDenseVertices || !IsDense(n, pairs);
+  return n <= kDenseVertices || !IsSolvedDensely(n, pairs);
 }
 
 absl::StatusOr<MatrixPairs> SolveDense(const SymmetricProblem& problem,
@@ -164,7 +155,8 @@ class SolverStream : public EigenPairStream {
     MARROW_ASSIGN_OR_RETURN(problem_, MakeProblem(mesh_.mesh, cancel));
     MARROW_RETURN_IF_ERROR(cancel.Check());
     prepared_ = true;
-    if (IsDense(problem_.A.rows(), most_)) return absl::OkStatus();
+    if (IsSolvedDensely(static_cast<int>(problem_.A.rows()), most_))
+      return absl::OkStatus();
     MARROW_ASSIGN_OR_RETURN(
         slicer_, SpectrumSlicer::Create(problem_.A, mesh_.mesh.positions.data(),
                                         most_, OptionsFor(tolerance_), cancel));

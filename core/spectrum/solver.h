@@ -14,13 +14,13 @@
 namespace marrow {
 
 // Changes whenever the same mesh may give other bytes.
-inline constexpr char kSolverRevision[] = "slicing/5";
+inline constexpr char kSolverRevision[] = "slicing/6";
 
 // What the residual ||L phi - lambda M phi|| of a pair, in the M^-1 norm, may
 // be in units of max(lambda, lambda_1). Segmentations are the same at the first
 // as at any smaller one.
 inline constexpr double kSolverTolerance = 1e-4;
-// Of pairs that certified_spectrum.h is to make strict.
+// Of pairs that are to be made strict by refinement.
 inline constexpr double kStrictSolverTolerance = 1e-7;
 
 // Solves anew at every call; keeps nothing.

@@ -8,6 +8,7 @@
 #include "core/base/error_reason.h"
 #include "core/operators/laplacian.h"
 #include "core/spectrum/solver.h"
+#include "core/spectrum/strict_solver.h"
 #include "gtest/gtest.h"
 #include "tests/testing/shapes.h"
 
@@ -29,11 +30,15 @@ Solved Solve(const TriangleMesh& mesh, uint32_t count, double tolerance) {
 }
 
 CertifiedSpectrum Strict(const TriangleMesh& mesh, uint32_t count) {
+  return SolveStrictly(CanonicalOf(mesh), count, CancelToken(), nullptr)
+      .value();
+}
+
+CertifiedSpectrum Refined(const TriangleMesh& mesh, uint32_t count) {
   const Solved solved =
       Solve(mesh, WithStrictGuards(count), kStrictSolverTolerance);
-  const CancelToken cancel;
   return CertifySpectrum(solved.mesh, *solved.pairs, count, kStrictResidual,
-                         cancel, nullptr)
+                         CancelToken(), nullptr)
       .value();
 }
 
@@ -107,17 +112,21 @@ TEST(CertifiedSpectrumTest, StrictPairsAreStrictOnAllKindsOfShapes) {
       {"two spheres", Apart(Icosphere(3), Icosphere(2))}};
   for (const auto& [name, mesh] : shapes) {
     SCOPED_TRACE(name);
-    const CertifiedSpectrum spectrum = Strict(mesh, 100);
-    ASSERT_EQ(spectrum.NumPairs(), 101u);
-    ExpectStrict(mesh, spectrum);
+    for (const auto& solve : {Strict, Refined}) {
+      const CertifiedSpectrum spectrum = solve(mesh, 100);
+      ASSERT_EQ(spectrum.NumPairs(), 101u);
+      ExpectStrict(mesh, spectrum);
+    }
   }
 }
 
 TEST(CertifiedSpectrumTest, StrictPairsAreThoseThatADenseSolverFinds) {
   for (const TriangleMesh& mesh : {Icosphere(3), LimbCross(3)}) {
-    const CertifiedSpectrum spectrum = Strict(mesh, 150);
-    ExpectStrict(mesh, spectrum);
-    ExpectCounted(mesh, spectrum);
+    for (const auto& solve : {Strict, Refined}) {
+      const CertifiedSpectrum spectrum = solve(mesh, 150);
+      ExpectStrict(mesh, spectrum);
+      ExpectCounted(mesh, spectrum);
+    }
   }
 }
 
