@@ -64,7 +64,8 @@ struct Surface {
   const Adjacency& adjacency;
   const FaceLinks& links;
   const Curvature* curvature;  // null where short cuts are all that is wanted
-  double most_breadth;         // of the band
+  double band_width;           // in radii of the boundary
+  double most_breadth;
   const Positions unit = UnitAreaPositions(mesh);
 
   double Length(uint32_t e) const {
@@ -141,7 +142,8 @@ class Mover {
   // Whether something of the piece is left outside of the band.
   bool AddBand(const std::vector<uint32_t>& boundary, uint32_t piece,
                const Pieces& pieces) {
-    const double limit = std::min(kBandWidth * radius_, surface_.most_breadth);
+    const double limit =
+        std::min(surface_.band_width * radius_, surface_.most_breadth);
     flood_.Run(boundary, limit / kBandShare,
                [&](uint32_t f) { return pieces.Of(f) == piece; });
     const double breadth = std::min(limit, kBandShare * flood_.farthest());
@@ -239,10 +241,11 @@ absl::Status MoveBoundaries(const TriangleMesh& mesh,
                             const Adjacency& adjacency,
                             const std::vector<double>& face_areas,
                             const FaceLinks& links, const Curvature& curvature,
-                            const CancelToken& cancel,
+                            double band_width, const CancelToken& cancel,
                             std::vector<uint32_t>& piece_of_face) {
-  const Surface surface{mesh, adjacency, links, &curvature,
-                        std::numeric_limits<double>::infinity()};
+  const Surface surface{mesh,       adjacency,
+                        links,      &curvature,
+                        band_width, std::numeric_limits<double>::infinity()};
   return Move(surface, face_areas, kMovePasses, cancel, piece_of_face);
 }
 
@@ -252,7 +255,7 @@ absl::Status SmoothBoundaries(const TriangleMesh& mesh,
                               const FaceLinks& links, double breadth,
                               const CancelToken& cancel,
                               std::vector<uint32_t>& piece_of_face) {
-  const Surface surface{mesh, adjacency, links, nullptr, breadth};
+  const Surface surface{mesh, adjacency, links, nullptr, kBandWidth, breadth};
   return Move(surface, face_areas, 1, cancel, piece_of_face);
 }
 

@@ -22,7 +22,7 @@ namespace marrow {
 //
 // K being the Gaussian curvature at width kCreaseWidth r: short cuts are cheap,
 // all the more where the surface is saddle-shaped, so that boundaries slide
-// down a limb into the crease around its base. The band reaches kBandWidth r
+// down a limb into the crease around its base. The band reaches `band_width` r
 // from the boundary, r = its length / 2 pi, but leaves of each piece what is
 // farther than kBandShare of its farthest point, so that no piece is lost. Then
 // strays join their neighbours (core/pieces/stray_pieces.h): pieces are in one
@@ -35,7 +35,7 @@ absl::Status MoveBoundaries(const TriangleMesh& mesh,
                             const Adjacency& adjacency,
                             const std::vector<double>& face_areas,
                             const FaceLinks& links, const Curvature& curvature,
-                            const CancelToken& cancel,
+                            double band_width, const CancelToken& cancel,
                             std::vector<uint32_t>& piece_of_face);
 
 // Moves boundaries that are in the right place but for the zigzag of a coarser

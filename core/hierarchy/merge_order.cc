@@ -70,7 +70,7 @@ std::vector<double> MergeOrder::InnerSalience(
 }
 
 absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
-                                       const CancelToken& cancel) {
+                                       const CancelToken& cancel, double end) {
   MergeOrder order;
   order.num_pieces = graph.NumPieces();
   Strengths strengths;
@@ -83,6 +83,7 @@ absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
     MARROW_RETURN_IF_ERROR(cancel.Check());
     const PieceGraph::Pair pair = Weakest(strengths);
     salience = std::max(salience, strengths[pair]);
+    if (salience >= end) break;
     order.merges.push_back({pair.first, pair.second, salience});
     graph.Merge(pair.first, pair.second);
     Update(graph, pair, meter, strengths);

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -46,10 +47,11 @@ struct MergeOrder {
   std::vector<double> InnerSalience(const std::vector<uint32_t>& cut) const;
 };
 
-// Merges until no boundary is left. Equal strengths merge in the order of their
-// pairs. Errors: CANCELLED.
-absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
-                                       const CancelToken& cancel);
+// Merges until no boundary is left, or none of less salience than `end`. Equal
+// strengths merge in the order of their pairs. Errors: CANCELLED.
+absl::StatusOr<MergeOrder> MergePieces(
+    PieceGraph graph, BoundaryMeter& meter, const CancelToken& cancel,
+    double end = std::numeric_limits<double>::infinity());
 
 }  // namespace marrow
 

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "core/boundaries/calibration.h"
 #include "core/operators/laplacian.h"
 #include "core/pieces/region.h"
 #include "gtest/gtest.h"
@@ -18,7 +19,7 @@ struct Body {
 
   std::vector<uint32_t> Moved(std::vector<uint32_t> pieces) const {
     EXPECT_TRUE(MoveBoundaries(mesh, adjacency, FaceAreaShares(mesh), {},
-                               curvature, CancelToken(), pieces)
+                               curvature, kBandWidth, CancelToken(), pieces)
                     .ok());
     return pieces;
   }
@@ -136,7 +137,7 @@ TEST(MoveBoundariesTest, StopsOnceCancelled) {
   cancel.Cancel();
   EXPECT_TRUE(absl::IsCancelled(
       MoveBoundaries(body.mesh, body.adjacency, FaceAreaShares(body.mesh), {},
-                     body.curvature, cancel, pieces)));
+                     body.curvature, kBandWidth, cancel, pieces)));
 }
 
 }  // namespace

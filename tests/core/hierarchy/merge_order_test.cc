@@ -1,6 +1,7 @@
 #include "core/hierarchy/merge_order.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "core/boundaries/calibration.h"
@@ -54,15 +55,15 @@ std::vector<uint32_t> Slices(const TriangleMesh& mesh,
   return slice;
 }
 
-MergeOrder Merged(const TriangleMesh& mesh,
-                  const std::vector<uint32_t>& pieces) {
+MergeOrder Merged(const TriangleMesh& mesh, const std::vector<uint32_t>& pieces,
+                  double end = std::numeric_limits<double>::infinity()) {
   const Adjacency adjacency(mesh);
   const std::vector<double> areas = FaceAreaShares(mesh);
   const CancelToken cancel;
   const Curvature curvature =
       Curvature::Measure(mesh, adjacency, cancel).value();
   BoundaryMeter meter(mesh, adjacency, areas, curvature);
-  return MergePieces(PieceGraph(adjacency, pieces, areas), meter, cancel)
+  return MergePieces(PieceGraph(adjacency, pieces, areas), meter, cancel, end)
       .value();
 }
 
@@ -74,6 +75,17 @@ TEST(MergePiecesTest, CutsThroughBallsGoFirstAndTheNeckStays) {
   EXPECT_THAT(order.CutInto(2), ElementsAre(0, 0, 0, 3, 3, 3));
   EXPECT_GT(order.merges[4].salience, kAutomaticSalience);
   EXPECT_LT(order.merges[0].salience, 0.5);
+}
+
+TEST(MergePiecesTest, EndsWhereItIsTold) {
+  const TriangleMesh mesh = Dumbbell(1, 36);
+  const std::vector<uint32_t> slices = Slices(mesh, {-2, -1.2, 0.52, 1.2, 2});
+  const MergeOrder whole = Merged(mesh, slices);
+  const double end = whole.merges[4].salience;
+  const MergeOrder order = Merged(mesh, slices, end);
+  EXPECT_LT(order.merges.size(), whole.merges.size());
+  EXPECT_LT(order.merges.back().salience, end);
+  EXPECT_EQ(order.CutAt(end), whole.CutAt(end));
 }
 
 TEST(MergePiecesTest, ShellsStayApart) {
