@@ -20,6 +20,16 @@ MARROWD = MARROW + "d"
 RADIUS = 3.0
 
 
+def wait_for_watch(pid):
+    """Until a process has blocked SIGINT, to wait for it by itself."""
+    while True:
+        with open(f"/proc/{pid}/status", encoding="ascii") as status:
+            blocked = next(line for line in status if line.startswith("SigBlk"))
+        if int(blocked.split()[1], 16) >> (signal.SIGINT - 1) & 1:
+            return
+        time.sleep(0.01)
+
+
 def sphere(subdivisions):
     """(vertices, faces) of an icosphere of radius RADIUS."""
     golden = (1 + 5 ** 0.5) / 2
@@ -185,6 +195,7 @@ class SpectrumNumpyTest(unittest.TestCase):
                 [MARROW, "spectrum", mesh, "-k", "500", "--strict", "-o",
                  self.path("large.npz")], stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL) as command:
+            wait_for_watch(command.pid)
             time.sleep(1)
             command.send_signal(signal.SIGINT)
             self.assertEqual(command.wait(timeout=60), 130)
