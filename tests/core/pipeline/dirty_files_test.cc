@@ -18,7 +18,8 @@ const std::map<std::string, Outcome>& Outcomes() {
       {"beast_nonmanifold.obj", Segments(2, 200)},
       {"camel-gallop-01.off", Segments(2, 200)},
       {"camel-gallop-02.off", Segments(2, 200)},
-      {"conrod.stl", Segments(2, 200)},
+      // A machine part: what came off at the last level was 0.2 % of its area.
+      {"conrod.stl", Segments(1, 200)},
       {"cube_quads.obj", Segments(1, 10)},
       {"cycloidal.ply", Segments(2, 200)},
       {"deg_faces.obj", Segments(1, 10)},
