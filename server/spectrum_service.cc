@@ -83,7 +83,7 @@ absl::StatusOr<CertifiedSpectrum> CertifyUsual(const Work& work,
 // Everything but the last event.
 absl::StatusOr<std::shared_ptr<const SpectrumEvents>> Solve(
     ServiceContext& context, const Work& work,
-    std::shared_ptr<const CanonicalMesh> mesh, SpectrumJob& job,
+    const std::shared_ptr<const CanonicalMesh>& mesh, SpectrumJob& job,
     SpectrumUse& use) {
   const CancelToken& cancel = *job.cancel();
   const ReportSteps report = [&job](double from, double to) {

@@ -94,7 +94,7 @@ the constant function's 0 first. Units are those of the file: an eigenvalue is
 -o FILE.npy writes the eigenvectors alone. -o - writes the archive to standard
 output, and nothing else. A file appears whole or not at all.
 
-Residuals are about 1e-4, with --strict at most 1e-8, which takes a few times
+Residuals are about 1e-4, with --strict at most 1e-8, which takes up to twice
 the work and is not kept in a server's cache.)";
 
 constexpr char kHealthFooter[] =

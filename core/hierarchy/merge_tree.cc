@@ -86,6 +86,7 @@ void NumberByArea(const std::vector<double>& face_areas,
   for (uint32_t f = 0; f < piece_of_face.size(); ++f)
     area[piece_of_face[f]] += face_areas[f];
   std::vector<std::pair<double, uint32_t>> order;
+  order.reserve(area.size());
   for (const auto& [piece, share] : area) order.push_back({share, piece});
   std::sort(order.begin(), order.end());
   std::map<uint32_t, uint32_t> number;

@@ -50,6 +50,7 @@ class Sink {
   // node are final.
   virtual bool OnTree(const SegmentTree& tree) = 0;
   // The last: what any cut of the tree is made from, for as long as it is held.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): others keep it.
   virtual bool OnSegmentedMesh(std::shared_ptr<const SegmentedMesh>) {
     return true;
   }

@@ -80,8 +80,8 @@ class BandFinder {
         request_(request),
         team_(team),
         cancel_(cancel),
-        process_(matrix.n, factor, 1000 * request.extra_steps, workspace.blocks,
-                 team, cancel) {}
+        process_(matrix.n, factor, uint64_t{1000} * request.extra_steps,
+                 workspace.blocks, team, cancel) {}
 
   absl::StatusOr<Band> Find(const StepCallback& on_step) {
     MARROW_RETURN_IF_ERROR(process_.Start());
@@ -297,7 +297,8 @@ class BandFinder {
     }
     band.residuals.resize(count);
     const size_t most =
-        kBlock * (matrix_.n < kLargeBlocks ? kMostTogether : kLeastTogether);
+        size_t{kBlock} *
+        (matrix_.n < kLargeBlocks ? kMostTogether : kLeastTogether);
     size_t there;
     for (size_t begin = 0; begin < count; begin += there) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
@@ -315,16 +316,15 @@ class BandFinder {
   // beside the shift. Beyond the pairs that need it others are iterated: what
   // is left of those in them would grow, or shrink too slowly.
   absl::Status Refine(Band& band) {
+    const double reach = kRefinedReach * FarthestWanting(band);
+    const int low = CountWithin(below_, reach);
+    std::vector<int> chosen(below_.index.rend() - low, below_.index.rend());
+    chosen.insert(chosen.end(), above_.index.begin(),
+                  above_.index.begin() + CountWithin(above_, reach));
+    MARROW_ASSIGN_OR_RETURN(Window window, MakeWindow(chosen));
     for (int i = 0; i < kMostRefinements && Worst(band) > request_.tolerance;
          ++i) {
-      const double reach = kRefinedReach * FarthestWanting(band);
-      const int low = CountWithin(below_, reach);
-      std::vector<int> chosen(below_.index.rend() - low, below_.index.rend());
-      chosen.insert(chosen.end(), above_.index.begin(),
-                    above_.index.begin() + CountWithin(above_, reach));
-      MARROW_ASSIGN_OR_RETURN(Window window, MakeWindow(chosen));
-      for (int k = 0; k <= i; ++k)
-        MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
+      MARROW_RETURN_IF_ERROR(IterateInversely(factor_, window, cancel_));
       MARROW_RETURN_IF_ERROR(TakeVectors(window, num_below_ - low, band));
     }
     return absl::OkStatus();
@@ -401,7 +401,7 @@ class BandFinder {
     for (int b = 0; b < blocks; b += scratch_blocks) {
       MARROW_RETURN_IF_ERROR(cancel_.Check());
       team_.For(std::min(scratch_blocks, blocks - b), [&](int i) {
-        const size_t first = begin + (b + i) * kBlock;
+        const size_t first = begin + static_cast<size_t>(b + i) * kBlock;
         const size_t count = band.values.size();
         if (first < count)
           WriteBlock(first, std::min<size_t>(kBlock, count - first), Y[b + i],

@@ -3,6 +3,7 @@
 #define MARROW_CORE_SPECTRUM_CERTIFICATE_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 
 #include "absl/status/status.h"
@@ -15,6 +16,9 @@ namespace marrow {
 
 // Pairs nearer than this share of their value are not told apart by a count.
 inline constexpr double kCountableGap = 1e-6;
+
+// What a factor may take where pairs are wanted in double.
+inline constexpr size_t kMaxExactFactorBytes = size_t{4} << 30;
 
 // The entry of largest magnitude (the first, where several are) is positive.
 void FixSign(Eigen::Ref<Eigen::VectorXd> vector);

@@ -35,7 +35,6 @@ constexpr int kMostGuards = 48;
 constexpr int kMostIterations = 6;
 // An iteration that does not bring the residual below this share was the last.
 constexpr double kWorthwhile = 0.8;
-constexpr size_t kMaxFactorBytes = size_t{4} << 30;
 constexpr double kAnalysisShare = 0.1;
 
 class Certifier {
@@ -283,7 +282,7 @@ absl::StatusOr<CertifiedSpectrum> CertifySparsely(
     const ProgressCallback& progress) {
   MARROW_ASSIGN_OR_RETURN(const SupernodalStructure structure,
                           AnalyseStructure(A, mesh.mesh.positions.data(),
-                                           kMaxFactorBytes, 1, cancel));
+                                           kMaxExactFactorBytes, 1, cancel));
   progress(kAnalysisShare);
   return Certifier(pairs, laplacian, structure, count, residual, cancel)
       .Certify(progress);

@@ -30,7 +30,8 @@ inline constexpr int TriangleTileColumns(int k, int first_row) {
 }
 inline constexpr size_t TriangleSize(int k) {
   size_t size = 0;
-  for (int i = 0; i < k; i += kTile) size += kTile * TriangleTileColumns(k, i);
+  for (int i = 0; i < k; i += kTile)
+    size += size_t{kTile} * TriangleTileColumns(k, i);
   return size;
 }
 

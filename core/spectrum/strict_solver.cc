@@ -30,7 +30,6 @@ namespace {
 // Bands are asked for less than is wanted in the end: to make them orthogonal
 // takes a little of it.
 constexpr double kBandShare = 0.75;
-constexpr size_t kMaxFactorBytes = size_t{4} << 30;
 constexpr double kSolverShare = 0.9;
 // Columns made orthogonal at a time, and rows worked on at once.
 constexpr int kColumns = 48;
@@ -144,7 +143,7 @@ class StrictSolver {
     options.threads = team_.threads();
     options.tolerance = kBandShare * kStrictResidual;
     options.exact = true;
-    options.max_factor_bytes = kMaxFactorBytes;
+    options.max_factor_bytes = kMaxExactFactorBytes;
     MARROW_ASSIGN_OR_RETURN(
         const auto slicer,
         SpectrumSlicer::Create(A, mesh_.mesh.positions.data(), total_, options,
@@ -249,6 +248,7 @@ absl::StatusOr<CertifiedSpectrum> SolveStrictly(
   const ProgressCallback report = progress ? progress : [](double) {};
   const int n = static_cast<int>(mesh.mesh.NumVertices());
   const int total = static_cast<int>(std::min<int64_t>(int64_t{count} + 1, n));
+  // CertifySpectrum() has a dense solver for these.
   if (IsSolvedDensely(n, total))
     return RefineUsualPairs(mesh, count, cancel, report);
   try {
