@@ -317,7 +317,7 @@ std::vector<v1::SegmentEvent> CutEvents(const SegmentedMesh& mesh,
 }
 
 SpectrumEvents::SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
-                               std::shared_ptr<const EigenPairs> pairs)
+                               const std::shared_ptr<const EigenPairs>& pairs)
     : mesh_(std::move(mesh)),
       eigenvalues_(pairs->eigenvalues),
       area_(pairs->area) {}

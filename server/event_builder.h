@@ -75,7 +75,7 @@ class SpectrumEvents {
  public:
   // Header and eigenvalues alone.
   SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
-                 std::shared_ptr<const EigenPairs> pairs);
+                 const std::shared_ptr<const EigenPairs>& pairs);
   SpectrumEvents(std::shared_ptr<const CanonicalMesh> mesh,
                  std::shared_ptr<const CertifiedSpectrum> spectrum,
                  bool eigenvectors);

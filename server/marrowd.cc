@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -166,10 +167,13 @@ int WaitForStopSignal() {
   return signal;
 }
 
-// gRPC's own messages become records of ours.
+// gRPC's own messages become records of ours, once the server listens: until
+// then what goes wrong is said in a word of our own.
 JsonLog* grpc_log = nullptr;
+std::atomic<bool> grpc_may_log = false;
 
 void LogFromGrpc(gpr_log_func_args* args) {
+  if (!grpc_may_log) return;
   LogRecord record;
   record.level = args->severity == GPR_LOG_SEVERITY_ERROR  ? LogLevel::kWarning
                  : args->severity == GPR_LOG_SEVERITY_INFO ? LogLevel::kInfo
@@ -191,6 +195,7 @@ int Serve(const Flags& flags, JsonLog& log) {
     return absl::IsInvalidArgument(server.status()) ? kExitUsage
                                                     : kExitCannotListen;
   }
+  grpc_may_log = true;
   const std::string address = Address(flags.options, (*server)->port());
   std::cout << "marrowd " << marrow::kVersion << " listening on " << address
             << std::endl;

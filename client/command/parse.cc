@@ -280,6 +280,12 @@ void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
                                  "cannot share standard output with "
                                  "-o -: name a file");
     }
+    if (const std::string& output = arguments.output;
+        !output.empty() && output != "-" && !output.ends_with(".npz") &&
+        !output.ends_with(".npy")) {
+      throw CLI::ValidationError(
+          "--output", "'" + output + "' ends in neither .npz nor .npy");
+    }
   });
 }
 

@@ -77,8 +77,8 @@ absl::StatusOr<PolygonMesh> ReadBinary(const std::string& path,
         bytes.data() + kHeaderBytes + size_t{kTriangleBytes} * t + kNormalBytes,
         sizeof(corners));
     for (uint32_t i = 0; i < 3; ++i) {
-      mesh.positions[3 * t + i] = {corners[3 * i], corners[3 * i + 1],
-                                   corners[3 * i + 2]};
+      mesh.positions[size_t{3} * t + i] = {corners[3 * i], corners[3 * i + 1],
+                                           corners[3 * i + 2]};
     }
     mesh.AddFace(std::array<uint32_t, 3>{3 * t, 3 * t + 1, 3 * t + 2});
   }

@@ -228,16 +228,16 @@ float Shader::LineStrength(int x, int y) const {
 }
 
 Color Light(const Color& base, const Vector3f& n, float openness) {
-  static const Vector3f kKey = Vector3f(-0.45f, 0.6f, 0.75f).normalized();
-  static const Vector3f kHalf = (kKey + Vector3f::UnitZ()).normalized();
+  static const Vector3f to_light = Vector3f(-0.45f, 0.6f, 0.75f).normalized();
+  static const Vector3f halfway = (to_light + Vector3f::UnitZ()).normalized();
   const Color sky(0.50f, 0.53f, 0.58f);
   const Color floor(0.30f, 0.27f, 0.25f);
   const float up = 0.5f + 0.5f * n.y();
   const Color ambient = openness * (up * sky + (1 - up) * floor);
-  const float wrapped = std::max((n.dot(kKey) + 0.2f) / 1.2f, 0.0f);
+  const float wrapped = std::max((n.dot(to_light) + 0.2f) / 1.2f, 0.0f);
   const Color key =
       wrapped * (0.4f + 0.6f * openness) * Color(0.78f, 0.75f, 0.70f);
-  const float glance = std::max(n.dot(kHalf), 0.0f);
+  const float glance = std::max(n.dot(halfway), 0.0f);
   const float glance4 = glance * glance * glance * glance;
   const float glance8 = glance4 * glance4;
   const float shine = 0.10f * glance8 * glance8 * glance8 * openness;

@@ -185,6 +185,16 @@ TEST(MarrowTest, SpectrumWritesEigenvectorsInTheFilesOrder) {
   EXPECT_TRUE(std::isnan(values[1]));
 }
 
+TEST(MarrowTest, SpectrumRefusesAnOutputOfNoFormat) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const Finished run =
+      Marrow({"spectrum", folder / "t.off", "-o", folder / "v.txt"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("neither .npz nor .npy"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "v.txt"));
+}
+
 TEST(MarrowTest, SpectrumRefusesImpossibleNumbers) {
   const TemporaryFolder folder;
   WriteFile(folder / "t.off", kTetrahedron);
