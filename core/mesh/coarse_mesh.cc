@@ -28,6 +28,8 @@ struct ShapeLimits {
   // Twice the area over the squared longest edge: 0.87 for an equilateral
   // triangle. Faces must not become worse than that, unless they were.
   double quality;
+
+  bool operator==(const ShapeLimits&) const = default;
 };
 // The second where the first leaves too many vertices: on surfaces all of
 // corners and holes.
@@ -60,6 +62,8 @@ class Coarsener {
         corners_(mesh.faces),
         live_(mesh.NumFaces()),
         gone_(mesh.NumVertices(), false),
+        stuck_(mesh.NumVertices(), false),
+        locked_(mesh.NumVertices(), false),
         heir_(mesh.NumFaces()),
         num_vertices_(mesh.NumVertices()) {
     std::iota(live_.begin(), live_.end(), 0u);
@@ -71,12 +75,14 @@ class Coarsener {
   // Takes away vertices that are no neighbours of each other, down to `least`.
   void Round(uint32_t least, const ShapeLimits& limits,
              const CancelToken& cancel) {
+    if (limits != limits_) stuck_.assign(stuck_.size(), false);
     limits_ = limits;
+    Unstick();
     GatherStars();
     locked_.assign(mesh_.NumVertices(), false);
     for (uint32_t u : ShortestFirst()) {
       if (num_vertices_ <= least || cancel.IsCancelled()) break;
-      if (!locked_[u]) TryCollapse(u);
+      if (!locked_[u] && !stuck_[u]) TryCollapse(u);
     }
     std::erase_if(live_, [&](uint32_t f) { return heir_[f] != f; });
   }
@@ -147,8 +153,19 @@ class Coarsener {
     return vertices;
   }
 
-  // Into the nearest neighbour that allows it.
+  // What a vertex may do hangs on the faces at it and at its neighbours.
+  void Unstick() {
+    for (uint32_t f : live_) {
+      const Triangle& face = corners_[f];
+      if (locked_[face[0]] || locked_[face[1]] || locked_[face[2]])
+        for (uint32_t v : face) stuck_[v] = false;
+    }
+  }
+
+  // Into the nearest neighbour that allows it. Stuck, unless a later round may
+  // find otherwise.
   void TryCollapse(uint32_t u) {
+    stuck_[u] = true;
     if (Star(u).size() > kMostFaces) return;
     const Ring ring = RingOf(u);
     Ring ends;  // of boundary edges
@@ -161,7 +178,7 @@ class Coarsener {
         near.push_back({SquaredLength(u, v), v});
     std::sort(near.begin(), near.end());
     for (const auto& [length, v] : near) {
-      if (!LinkHolds(u, v, ring) || !ShapesHold(u, v)) continue;
+      if (!ShapesHold(u, v) || !LinkHolds(u, v, ring)) continue;
       Collapse(u, v, ring);
       return;
     }
@@ -182,6 +199,11 @@ class Coarsener {
     size_t count = 0;
     for (uint32_t f : Star(u)) count += Has(corners_[f], v);
     return count;
+  }
+
+  bool IsNeighbour(uint32_t u, uint32_t v) const {
+    return std::ranges::any_of(Star(u),
+                               [&](uint32_t f) { return Has(corners_[f], v); });
   }
 
   // Whether the faces around u are one fan, closed or with two ends.
@@ -206,11 +228,9 @@ class Coarsener {
   bool LinkHolds(uint32_t u, uint32_t v, const Ring& ring) const {
     const size_t shared = CountShared(u, v);
     if (shared == Star(u).size()) return false;
-    const Ring other = RingOf(v);
-    Ring common;
-    std::set_intersection(ring.begin(), ring.end(), other.begin(), other.end(),
-                          std::back_inserter(common));
-    if (common.size() != shared) return false;
+    size_t common = 0;
+    for (uint32_t w : ring) common += w != v && IsNeighbour(v, w);
+    if (common != shared) return false;
     // Nor may a face come to lie on another.
     for (uint32_t f : Star(u)) {
       if (Has(corners_[f], v)) continue;
@@ -298,13 +318,14 @@ class Coarsener {
   std::vector<Triangle> corners_;  // of each face, as collapsed so far
   std::vector<uint32_t> live_;     // faces that are left, ascending
   std::vector<bool> gone_;         // vertices
+  std::vector<bool> stuck_;        // vertices that had nowhere to go
+  std::vector<bool> locked_;       // a face at it changed in the last round
   std::vector<uint32_t> heir_;     // face -> whose patch it joined, or itself
   uint32_t num_vertices_;
   // Of the round.
   ShapeLimits limits_{};
   std::vector<uint32_t> offsets_;
   std::vector<uint32_t> star_;
-  std::vector<bool> locked_;  // a face at it has changed
 };
 
 }  // namespace
