@@ -80,6 +80,7 @@ absl::InlinedVector<uint32_t, 2> FewNeighbours(const Adjacency& adjacency,
                                                uint32_t e, uint32_t f) {
   const std::span<const uint32_t> around = adjacency.EdgeFaces(e);
   if (around.size() < 2) return {};
+  if (around.size() == 2) return {around[around[0] == f]};
   const size_t i =
       std::lower_bound(around.begin(), around.end(), f) - around.begin();
   const uint32_t next = around[(i + 1) % around.size()];

@@ -2,6 +2,7 @@
 #ifndef MARROW_CORE_BOUNDARIES_FLOOD_H_
 #define MARROW_CORE_BOUNDARIES_FLOOD_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -23,8 +24,8 @@ class Flood {
 
   // Starts anew: from the ends of `edges`, over faces for which `within` holds,
   // up to vertices at distance `limit`.
-  void Run(std::span<const uint32_t> edges, double limit,
-           const std::function<bool(uint32_t)>& within);
+  template <typename Within>  // bool(uint32_t face)
+  void Run(std::span<const uint32_t> edges, double limit, const Within& within);
 
   // Of the last run: the faces with a vertex nearer than the limit, in the
   // order in which they were reached.
@@ -50,7 +51,15 @@ class Flood {
   bool IsNear(uint32_t vertex, double distance) const {
     return marks_[vertex].run == run_ && marks_[vertex].distance <= distance;
   }
-  void Reach(uint32_t vertex, double distance, double limit);
+  void Reach(uint32_t vertex, double distance, double limit) {
+    if (IsNear(vertex, distance)) return;
+    marks_[vertex] = {run_, distance};
+    if (distance >= limit) return;
+    heap_.push_back({distance, vertex});
+    std::push_heap(heap_.begin(), heap_.end(), std::greater<Entry>());
+  }
+  void Start(std::span<const uint32_t> edges, double limit);
+  void FindFarthest(double limit);
 
   const TriangleMesh& mesh_;
   const Adjacency& adjacency_;
@@ -62,6 +71,30 @@ class Flood {
   std::vector<uint32_t> faces_;
   double farthest_ = 0;
 };
+
+template <typename Within>
+void Flood::Run(std::span<const uint32_t> edges, double limit,
+                const Within& within) {
+  Start(edges, limit);
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<Entry>());
+    const auto [distance, v] = heap_.back();
+    heap_.pop_back();
+    if (distance > marks_[v].distance) continue;
+    for (uint32_t f : adjacency_.VertexFaces(v)) {
+      if (face_stamp_[f] != run_) {
+        if (!within(f)) continue;
+        faces_.push_back(f);
+        face_stamp_[f] = run_;
+      }
+      for (uint32_t u : mesh_.faces[f])
+        if (u != v && !IsNear(u, distance))
+          Reach(u, distance + (positions_.row(u) - positions_.row(v)).norm(),
+                limit);
+    }
+  }
+  FindFarthest(limit);
+}
 
 }  // namespace marrow
 
