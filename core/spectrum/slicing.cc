@@ -36,6 +36,7 @@ namespace {
 // members of a cluster beyond what a block has columns come out of rounding, a
 // block of them in about as many steps.
 constexpr int kMostRepairs = 3;
+constexpr int kMostExactRepairs = 5;  // rounding lies deeper
 constexpr int kRepairSteps = 6;
 constexpr auto kReportEvery = std::chrono::milliseconds(20);
 // Pairs that a step brings nearer, as a share of a block, and the usual
@@ -309,7 +310,7 @@ class Slicer : public SpectrumSlicer {
         MARROW_ASSIGN_OR_RETURN(sound, CountsAgree(found, desk, cancel));
       }
       if (sound) return absl::OkStatus();
-      if (repair == kMostRepairs)
+      if (repair == (options_.exact ? kMostExactRepairs : kMostRepairs))
         return absl::InternalError("the count of the eigenvalues disagrees");
       BandRequest request = found.plan.request;
       request.extra_steps = kRepairSteps << repair;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
 #include "core/spectrum/certificate.h"
@@ -148,10 +149,8 @@ class StrictSolver {
         const auto slicer,
         SpectrumSlicer::Create(A, mesh_.mesh.positions.data(), total_, options,
                                cancel_));
-    MARROW_ASSIGN_OR_RETURN(
-        std::vector<SpectrumPart> parts,
-        slicer->Find({.pairs = total_}, cancel_,
-                     [&](double share) { progress(kSolverShare * share); }));
+    MARROW_ASSIGN_OR_RETURN(std::vector<SpectrumPart> parts,
+                            FindAll(*slicer, progress));
     const InertiaCount last = parts.back().counts.back();
     const Eigen::VectorXd known = ValuesOf(parts);
     spectrum_.eigenvalues = known.head(total_);
@@ -169,6 +168,24 @@ class StrictSolver {
   }
 
  private:
+  // Find() may end early, and says why only when it is asked again.
+  absl::StatusOr<std::vector<SpectrumPart>> FindAll(
+      SpectrumSlicer& slicer, const ProgressCallback& progress) {
+    std::vector<SpectrumPart> parts;
+    for (int found = 0; found < total_;) {
+      MARROW_ASSIGN_OR_RETURN(
+          std::vector<SpectrumPart> more,
+          slicer.Find({.pairs = total_}, cancel_,
+                      [&](double share) { progress(kSolverShare * share); }));
+      if (more.empty()) return absl::InternalError("the bands ended early");
+      for (SpectrumPart& part : more) {
+        found += part.end - part.first;
+        parts.push_back(std::move(part));
+      }
+    }
+    return parts;
+  }
+
   static Eigen::VectorXd ValuesOf(const std::vector<SpectrumPart>& parts) {
     std::vector<double> values;
     for (const SpectrumPart& part : parts)
@@ -227,6 +244,31 @@ class StrictSolver {
   CertifiedSpectrum spectrum_;
 };
 
+// Windows that part a cluster may find one vector of it twice.
+absl::Status CheckOrthonormal(const CanonicalMesh& mesh,
+                              const CertifiedSpectrum& spectrum,
+                              const CancelToken& cancel) {
+  constexpr double kMost = 1e-8;
+  MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
+                          BuildLaplacian(mesh.mesh, cancel));
+  const Eigen::MatrixXd& phi = spectrum.eigenvectors;
+  for (Eigen::Index begin = 0; begin < phi.cols(); begin += kColumns) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    const auto width = std::min<Eigen::Index>(kColumns, phi.cols() - begin);
+    Eigen::MatrixXd products =
+        phi.leftCols(begin + width).transpose() *
+        (laplacian.M.asDiagonal() * phi.middleCols(begin, width));
+    products.bottomRows(width) -= Eigen::MatrixXd::Identity(width, width);
+    if (!(products.cwiseAbs().maxCoeff() <= kMost))
+      return WithReason(
+          absl::InternalError(
+              "so many eigenvalues are equal that their vectors cannot be told "
+              "apart to the last digits; ask for a usual spectrum"),
+          kReasonSolverNotConverged);
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<CertifiedSpectrum> RefineUsualPairs(
     const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
     const ProgressCallback& progress) {
@@ -234,10 +276,14 @@ absl::StatusOr<CertifiedSpectrum> RefineUsualPairs(
       const auto pairs,
       SolverEigenPairSource(kStrictSolverTolerance)
           .Get(mesh, WithStrictGuards(count), cancel, nullptr));
-  return CertifySpectrum(mesh, *pairs, count, kStrictResidual, cancel,
-                         [&](double share) {
-                           progress(kSolverShare + (1 - kSolverShare) * share);
-                         });
+  MARROW_ASSIGN_OR_RETURN(
+      CertifiedSpectrum spectrum,
+      CertifySpectrum(mesh, *pairs, count, kStrictResidual, cancel,
+                      [&](double share) {
+                        progress(kSolverShare + (1 - kSolverShare) * share);
+                      }));
+  MARROW_RETURN_IF_ERROR(CheckOrthonormal(mesh, spectrum, cancel));
+  return spectrum;
 }
 
 }  // namespace

@@ -120,6 +120,26 @@ TEST(CertifiedSpectrumTest, StrictPairsAreStrictOnAllKindsOfShapes) {
   }
 }
 
+// Bands end early here, and what is not found must not be made up.
+TEST(CertifiedSpectrumTest, StrictPairsOfClustersAreStrictOrRefused) {
+  TriangleMesh mesh = Icosphere(2);
+  for (int i = 1; i < 12; ++i) mesh = Apart(mesh, Icosphere(2));
+  for (uint32_t count : {20, 60, 200}) {
+    SCOPED_TRACE(count);
+    const auto spectrum =
+        SolveStrictly(CanonicalOf(mesh), count, CancelToken(), nullptr);
+    // Who asks is told by the residuals.
+    if (spectrum.ok() && spectrum->residuals.maxCoeff() <= kStrictResidual) {
+      ExpectStrict(mesh, *spectrum);
+      EXPECT_TRUE(std::is_sorted(spectrum->eigenvalues.begin(),
+                                 spectrum->eigenvalues.end()));
+    } else if (!spectrum.ok()) {
+      EXPECT_EQ(ReasonOf(spectrum.status()), kReasonSolverNotConverged)
+          << spectrum.status();
+    }
+  }
+}
+
 TEST(CertifiedSpectrumTest, StrictPairsAreThoseThatADenseSolverFinds) {
   for (const TriangleMesh& mesh : {Icosphere(3), LimbCross(3)}) {
     for (const auto& solve : {Strict, Refined}) {
