@@ -33,6 +33,10 @@ constexpr Kind kKinds[] = {
     {"WELDED_POINTS", false, &MeshReport::welded_points,
      "point lies where another does; it is welded to it",
      "points lie where others do; they are welded to those"},
+    {"CRACKS", true, &MeshReport::crack_points,
+     "vertex lies beside another with a crack between them; they are made one",
+     "vertices lie beside others with cracks between them; they are made one "
+     "with those"},
     {"DEGENERATE_FACES", true, &MeshReport::degenerate_faces,
      "face has two corners at one position; it has a neighbour's label",
      "faces have two corners at one position; each has a neighbour's label"},

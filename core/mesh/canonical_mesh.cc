@@ -1,8 +1,10 @@
 #include "core/mesh/canonical_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "core/mesh/cracks.h"
 
 namespace marrow {
 namespace {
@@ -21,6 +24,31 @@ absl::Status Rejected(const std::string& what) {
   return WithReason(absl::InvalidArgumentError(what), kReasonMeshRejected);
 }
 
+// The highest bit in which two finite numbers differ, written in binary: the
+// power of two, but for a constant. The sign is above all bits.
+int HighestDifference(double a, double b) {
+  constexpr int kMantissa = 52;
+  if (a == b) return std::numeric_limits<int>::min();
+  if ((a < 0) != (b < 0)) return std::numeric_limits<int>::max();
+  const auto x = std::bit_cast<uint64_t>(std::abs(a));
+  const auto y = std::bit_cast<uint64_t>(std::abs(b));
+  const auto exponent = static_cast<int>(std::max(x, y) >> kMantissa);
+  if (x >> kMantissa != y >> kMantissa) return exponent;
+  return std::max(exponent, 1) - kMantissa + std::bit_width(x ^ y) - 1;
+}
+
+// The Z-order of Morton: by the coordinate that differs in the highest bit, x
+// before y before z.
+bool IsBeforeOnCurve(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  int by = 0, highest = HighestDifference(a[0], b[0]);
+  for (int i = 1; i < 3; ++i)
+    if (const int bit = HighestDifference(a[i], b[i]); bit > highest) {
+      by = i;
+      highest = bit;
+    }
+  return a[by] < b[by];
+}
+
 // The different positions of the payload in canonical order, called spots
 // until it is known which of them are vertices.
 struct Spots {
@@ -30,31 +58,26 @@ struct Spots {
 
 Spots Weld(const Positions& points) {
   struct Record {
-    double x, y, z;
+    Eigen::Vector3d place;
     uint32_t point;
-    bool SamePlace(const Record& r) const {
-      return x == r.x && y == r.y && z == r.z;
-    }
   };
   std::vector<Record> records(points.rows());
-  for (uint32_t p = 0; p < records.size(); ++p) {
+  for (uint32_t p = 0; p < records.size(); ++p)
     // Adding 0 makes -0 into 0 and leaves everything else.
-    records[p] = {points(p, 0) + 0.0, points(p, 1) + 0.0, points(p, 2) + 0.0,
-                  p};
-  }
+    records[p] = {points.row(p).transpose().array() + 0.0, p};
   std::sort(records.begin(), records.end(),
             [](const Record& a, const Record& b) {
-              return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+              return IsBeforeOnCurve(a.place, b.place);
             });
   Spots spots;
   spots.of_point.resize(records.size());
   spots.positions.resize(points.rows(), 3);
   uint32_t count = 0;
   for (size_t i = 0; i < records.size(); ++i) {
-    if (i == 0 || !records[i].SamePlace(records[i - 1])) {
-      spots.positions.row(count++) << records[i].x, records[i].y, records[i].z;
-    }
-    spots.of_point[records[i].point] = count - 1;
+    const auto& [place, point] = records[i];
+    if (i == 0 || place != records[i - 1].place)
+      spots.positions.row(count++) = place.transpose();
+    spots.of_point[point] = count - 1;
   }
   spots.positions.conservativeResize(count, 3);
   return spots;
@@ -255,20 +278,10 @@ absl::Status CheckSize(const MeshReport& report) {
   return absl::OkStatus();
 }
 
-}  // namespace
-
-Digest GeometryDigestOf(const TriangleMesh& mesh) {
-  DigestBuilder builder("marrow.geometry/1");
-  builder.AddU64(mesh.NumVertices());
-  builder.AddU64(mesh.NumFaces());
-  builder.Add(mesh.positions.data(), mesh.positions.size() * sizeof(double));
-  builder.Add(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle));
-  return builder.Finish();
-}
-
-absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
-  if (decoded.faces.empty()) return Rejected("the mesh has no faces");
-  const Spots spots = Weld(decoded.positions);
+// All but the maps of degenerate faces and points, and the digest.
+absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
+                                       const Spots& spots,
+                                       std::vector<uint32_t>& vertex_of_spot) {
   std::vector<FaceRecord> records = RotatedFaces(decoded, spots);
   if (records.empty()) {
     return Rejected(absl::StrCat(
@@ -281,7 +294,7 @@ absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
   result.face_map.assign(decoded.faces.size(), kNoIndex);
   KeepFaces(std::move(records), result);
   const uint64_t duplicate_faces = result.report.duplicate_faces;
-  const std::vector<uint32_t> vertex_of_spot = KeepVertices(spots, result.mesh);
+  vertex_of_spot = KeepVertices(spots, result.mesh);
   result.report = ReportOn(result.mesh);
   result.report.decoded_points = decoded.positions.rows();
   result.report.decoded_faces = decoded.faces.size();
@@ -291,12 +304,53 @@ absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
   result.report.degenerate_faces = degenerate_faces;
   result.report.duplicate_faces = duplicate_faces;
   MARROW_RETURN_IF_ERROR(CheckSize(result.report));
+  return result;
+}
 
+// How many vertices became one with another.
+uint64_t CloseCracks(const CanonicalMesh& mesh,
+                     const std::vector<uint32_t>& vertex_of_spot,
+                     Spots& spots) {
+  if (mesh.report.boundary_edges == 0) return 0;
+  const std::vector<uint32_t> closed = FindCracks(mesh.mesh);
+  std::vector<uint32_t> spot_of_vertex(closed.size());
+  for (uint32_t s = 0; s < vertex_of_spot.size(); ++s)
+    if (vertex_of_spot[s] != kNoIndex) spot_of_vertex[vertex_of_spot[s]] = s;
+  uint64_t count = 0;
+  for (uint32_t v = 0; v < closed.size(); ++v) count += closed[v] != v;
+  if (count == 0) return 0;
+  for (uint32_t& spot : spots.of_point)
+    if (const uint32_t v = vertex_of_spot[spot]; v != kNoIndex)
+      spot = spot_of_vertex[closed[v]];
+  return count;
+}
+
+}  // namespace
+
+Digest GeometryDigestOf(const TriangleMesh& mesh) {
+  DigestBuilder builder("marrow.geometry/2");
+  builder.AddU64(mesh.NumVertices());
+  builder.AddU64(mesh.NumFaces());
+  builder.Add(mesh.positions.data(), mesh.positions.size() * sizeof(double));
+  builder.Add(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle));
+  return builder.Finish();
+}
+
+absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
+  if (decoded.faces.empty()) return Rejected("the mesh has no faces");
+  Spots spots = Weld(decoded.positions);
+  std::vector<uint32_t> vertex_of_spot;
+  MARROW_ASSIGN_OR_RETURN(CanonicalMesh result,
+                          Assemble(decoded, spots, vertex_of_spot));
+  const uint64_t cracked = CloseCracks(result, vertex_of_spot, spots);
+  if (cracked > 0) {
+    MARROW_ASSIGN_OR_RETURN(result, Assemble(decoded, spots, vertex_of_spot));
+    result.report.crack_points = cracked;
+  }
   MapDegenerateFaces(decoded, spots, vertex_of_spot, result);
   result.point_map.reserve(spots.of_point.size());
-  for (uint32_t spot : spots.of_point) {
+  for (uint32_t spot : spots.of_point)
     result.point_map.push_back(vertex_of_spot[spot]);
-  }
   result.geometry_digest = GeometryDigestOf(result.mesh);
   return result;
 }

@@ -1,10 +1,14 @@
 // Decoded mesh -> welded mesh in canonical order, with the way back.
 //
 // Everything is computed on the canonical mesh, so the numbering of the file
-// cannot matter: equal points are one vertex (-0 equals 0), vertices are sorted
-// by position (x, then y, then z), each face is rotated to begin with its least
-// vertex and the faces are sorted. Of faces with the same three vertices the
-// one that sorts first is kept. Orientation is kept.
+// cannot matter: equal points are one vertex (-0 equals 0), and so are points
+// on either side of a crack (core/mesh/cracks.h), vertices are sorted
+// by position, each face is rotated to begin with its least vertex and the
+// faces are sorted. Positions are sorted along the Z-order curve of their
+// coordinates as binary numbers: what is near in number is near on the surface,
+// mostly, and a part of a mesh has its vertices in the order that they have
+// alone. Of faces with the same three vertices the one that sorts first is
+// kept. Orientation is kept.
 #ifndef MARROW_CORE_MESH_CANONICAL_MESH_H_
 #define MARROW_CORE_MESH_CANONICAL_MESH_H_
 

@@ -104,19 +104,50 @@ DecodedMesh DirtyTorus() {
   return mesh;
 }
 
+// Bit by bit from the sign down, by hand: interleaved, the bits of b's
+// coordinates must be the greater number.
+bool IsBeforeOnCurve(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  auto bit = [](double x, int i) {
+    if (i == 63) return x >= 0;
+    const auto fixed = static_cast<uint64_t>(std::ldexp(std::abs(x), 55));
+    return ((fixed >> i & 1) == 1) == (x >= 0);
+  };
+  for (int i = 63; i >= 0; --i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (bit(a[axis], i) != bit(b[axis], i)) return bit(b[axis], i);
+  return false;
+}
+
 TEST(CanonicalMeshTest, IsSortedAndRotated) {
   const CanonicalMesh c = Canonical(Renumbered(Torus(9, 11), 1));
   ASSERT_EQ(c.mesh.NumVertices(), 99u);
   ASSERT_EQ(c.mesh.NumFaces(), 198u);
-  for (uint32_t v = 1; v < c.mesh.NumVertices(); ++v) {
-    const auto a = c.mesh.Position(v - 1), b = c.mesh.Position(v);
-    EXPECT_TRUE(
-        std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()));
-  }
+  for (uint32_t v = 1; v < c.mesh.NumVertices(); ++v)
+    EXPECT_TRUE(IsBeforeOnCurve(c.mesh.Position(v - 1), c.mesh.Position(v)));
   for (const Triangle& face : c.mesh.faces) {
     EXPECT_EQ(face[0], std::min({face[0], face[1], face[2]}));
   }
   EXPECT_TRUE(std::is_sorted(c.mesh.faces.begin(), c.mesh.faces.end()));
+}
+
+// Or a body of several would be computed anew when it comes alone.
+TEST(CanonicalMeshTest, PartsKeepTheirOrder) {
+  const DecodedMesh part = Torus(9, 11);
+  DecodedMesh both = part;
+  const uint32_t count = part.positions.rows();
+  both.positions.conservativeResize(2 * count, 3);
+  both.positions.bottomRows(count) = 100 * part.positions;
+  for (const Triangle& face : part.faces)
+    both.faces.push_back({face[0] + count, face[1] + count, face[2] + count});
+  const CanonicalMesh alone = Canonical(part), c = Canonical(both);
+  uint32_t last = 0;
+  for (uint32_t v = 0; v < count; ++v) {
+    const auto at =
+        std::find(alone.point_map.begin(), alone.point_map.end(), v);
+    const uint32_t now = c.point_map[at - alone.point_map.begin()];
+    EXPECT_TRUE(v == 0 || last < now);
+    last = now;
+  }
 }
 
 TEST(CanonicalMeshTest, NumberingCannotMatter) {
@@ -135,6 +166,42 @@ TEST(CanonicalMeshTest, NumberingCannotMatter) {
     EXPECT_EQ(actual.report.welded_points, 33u);
     ExpectMapsAreRight(other, actual);
   }
+}
+
+// As programs leave them that write every corner of every face, rounded.
+TEST(CanonicalMeshTest, ClosesCracks) {
+  const DecodedMesh torus = Torus(9, 11);
+  std::mt19937 random(5);
+  DecodedMesh soup;
+  soup.positions.resize(3 * torus.faces.size(), 3);
+  for (const Triangle& face : torus.faces) {
+    const auto first = static_cast<uint32_t>(3 * soup.faces.size());
+    for (uint32_t i = 0; i < 3; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        soup.positions(first + i, axis) =
+            torus.positions(face[i], axis) + 1e-7 * (random() * 0x1p-32);
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  const CanonicalMesh c = Canonical(soup);
+  EXPECT_EQ(c.mesh.NumVertices(), 99u);
+  EXPECT_EQ(c.report.components, 1u);
+  EXPECT_EQ(c.report.boundary_edges, 0u);
+  EXPECT_EQ(c.report.crack_points, 3 * 198u - 99u);
+  for (uint32_t v : c.point_map) ASSERT_LT(v, 99u);
+  EXPECT_EQ(Canonical(torus).report.crack_points, 0u);
+}
+
+// A gap of a thousandth is none.
+TEST(CanonicalMeshTest, LeavesGapsOpen) {
+  const CanonicalMesh c = Canonical(MeshOf({{0, 0, 0},
+                                            {1, 0, 0},
+                                            {0, 1, 0},
+                                            {0, -1e-3, 0},
+                                            {1, -1e-3, 0},
+                                            {0, -1, 0}},
+                                           {{0, 1, 2}, {3, 5, 4}}));
+  EXPECT_EQ(c.mesh.NumVertices(), 6u);
+  EXPECT_EQ(c.report.crack_points, 0u);
 }
 
 TEST(CanonicalMeshTest, KeepsOrientation) {

@@ -1,0 +1,75 @@
+#include "core/mesh/cracks.h"
+
+#include <algorithm>
+#include <limits>
+#include <nanoflann.hpp>
+#include <numeric>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/unit_box.h"
+
+namespace marrow {
+namespace {
+
+constexpr double kMostBreadth = 1e-5;
+constexpr double kMostOfEdge = 0.1;
+
+// nanoflann's view of some vertices.
+struct Cloud {
+  const Positions& points;
+  const std::vector<uint32_t>& vertices;
+
+  size_t kdtree_get_point_count() const { return vertices.size(); }
+  double kdtree_get_pt(size_t i, size_t d) const {
+    return points(vertices[i], d);
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+// How far from each vertex others are one with it, squared.
+std::vector<double> SquaredReach(const TriangleMesh& mesh,
+                                 const Positions& points) {
+  std::vector<double> reach(mesh.NumVertices(), kMostBreadth * kMostBreadth);
+  for (const Triangle& face : mesh.faces)
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t u = face[i], v = face[(i + 1) % 3];
+      const double limit = kMostOfEdge * kMostOfEdge *
+                           (points.row(u) - points.row(v)).squaredNorm();
+      reach[u] = std::min(reach[u], limit);
+      reach[v] = std::min(reach[v], limit);
+    }
+  return reach;
+}
+
+}  // namespace
+
+std::vector<uint32_t> FindCracks(const TriangleMesh& mesh) {
+  const std::vector<uint32_t> rim = RimVertices(Adjacency(mesh));
+  std::vector<uint32_t> closed(mesh.NumVertices());
+  std::iota(closed.begin(), closed.end(), 0u);
+  if (rim.empty()) return closed;
+  const Positions points = ToUnitBox(mesh).points;
+  const std::vector<double> reach = SquaredReach(mesh, points);
+  const Cloud cloud{points, rim};
+  const nanoflann::KDTreeSingleIndexAdaptor<
+      nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
+      tree(3, cloud);
+  DisjointSets sets(mesh.NumVertices());
+  std::vector<std::pair<uint32_t, double>> near;
+  for (uint32_t v : rim) {
+    const Eigen::Vector3d place = points.row(v).transpose();
+    tree.radiusSearch(place.data(), reach[v], near,
+                      nanoflann::SearchParams(32, 0, false));
+    for (const auto& [i, square] : near)
+      if (square < reach[rim[i]]) sets.Union(v, rim[i]);
+  }
+  for (uint32_t v : rim) closed[v] = sets.Find(v);
+  return closed;
+}
+
+}  // namespace marrow

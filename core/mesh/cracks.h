@@ -1,0 +1,21 @@
+// Cracks: rims that are one but for rounding.
+#ifndef MARROW_CORE_MESH_CRACKS_H_
+#define MARROW_CORE_MESH_CRACKS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// Vertex -> the least of those that it is one with, itself where there are
+// none. Vertices of rims (edges of one face) are one where they are nearer than
+// 1e-5 of the longest side of the box and than a tenth of the shortest edge at
+// either: what programs leave that write corners apart, and round them.
+// Deterministic, O(n log n), thread safe.
+std::vector<uint32_t> FindCracks(const TriangleMesh& mesh);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_MESH_CRACKS_H_
