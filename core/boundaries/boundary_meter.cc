@@ -37,13 +37,24 @@ double Strength(const Measures& measures) {
 BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
                              const Adjacency& adjacency,
                              const std::vector<double>& face_areas,
-                             const Curvature& curvature)
+                             const Curvature& curvature, double share)
     : mesh_(mesh),
       adjacency_(adjacency),
       face_areas_(face_areas),
       curvature_(curvature),
+      share_(share),
       unit_(UnitAreaPositions(mesh)),
       flood_(mesh, adjacency, unit_) {}
+
+double BoundaryMeter::StrengthBetween(const PieceGraph& graph,
+                                      const PieceGraph::Pair& groups) {
+  const auto boundary = graph.boundaries().find(groups);
+  if (boundary != graph.boundaries().end() && !boundary->second.empty())
+    return Strength(MeasureBoundary(graph, groups));
+  const double share = share_ * std::min(graph.AreaOfShells(groups.first),
+                                         graph.AreaOfShells(groups.second));
+  return 1 / (1 + std::pow(kShellShare / std::max(kLeastShare, share), 2));
+}
 
 Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
                                         const PieceGraph::Pair& groups) {

@@ -51,13 +51,22 @@ double Strength(const Measures& measures);
 // it.
 class BoundaryMeter {
  public:
-  // `face_areas` are shares of the mesh's area.
+  // `face_areas` are shares of the mesh's area, and `share` is the mesh's share
+  // in the area of all bodies.
   BoundaryMeter(const TriangleMesh& mesh, const Adjacency& adjacency,
                 const std::vector<double>& face_areas,
-                const Curvature& curvature);
+                const Curvature& curvature, double share = 1);
 
-  // REQUIRES: the two groups have a boundary. Time: that of walking all faces
-  // within 2 r of it. Symmetric in the groups' order.
+  // The strength of the boundary of two groups. Where no edge has faces of both
+  // they are of different shells, and it is s^2 / (s^2 + kShellShare^2), s
+  // being the share, in the area of all bodies, of the shells of one group, and
+  // of the group for which that is less: whoever made a shell of its own, and a
+  // large one, made a part.
+  double StrengthBetween(const PieceGraph& graph,
+                         const PieceGraph::Pair& groups);
+
+  // REQUIRES: the two groups have a boundary, with edges. Time: that of walking
+  // all faces within 2 r of it. Symmetric in the groups' order.
   Measures MeasureBoundary(const PieceGraph& graph,
                            const PieceGraph::Pair& groups);
 
@@ -80,6 +89,7 @@ class BoundaryMeter {
   const Adjacency& adjacency_;
   const std::vector<double>& face_areas_;
   const Curvature& curvature_;
+  double share_;
   Positions unit_;
   Flood flood_;
 };

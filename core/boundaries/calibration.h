@@ -1,5 +1,5 @@
-// The calibrated constants of METHOD_MERGE, all of them: ten weights, four
-// thresholds, and how pieces are made.
+// The calibrated constants of METHOD_MERGE, all of them: ten weights, a
+// few thresholds, and how pieces are made.
 //
 // The weights are a logistic regression on human segmentations of articulated
 // bodies: does merging two groups disagree with more people than it agrees
@@ -36,6 +36,11 @@ inline constexpr Measures kStrengthWeights = {
     1.181,   // kStripOfLarger
     6.181,   // kLargestLoop
 };
+
+// Of the area: a closed shell of so much beside another is as likely a part as
+// not. It is one of the automatic cut from .012 on, and of level 1 from .032.
+// Not fitted: people were not asked about shells.
+inline constexpr double kShellShare = 0.0087;
 
 // Levels are the cuts of the merged pieces at these saliences, the same for
 // every mesh. The second is the automatic cut: boundaries that are kept more

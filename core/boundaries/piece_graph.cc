@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "core/pieces/region.h"
+
 namespace marrow {
 
 PieceGraph::PieceGraph(const Adjacency& adjacency,
@@ -30,19 +32,41 @@ PieceGraph::PieceGraph(const Adjacency& adjacency,
       for (size_t j = i + 1; j < around.size(); ++j)
         boundaries_[{around[i], around[j]}].push_back(e);
   }
-  if (!links.empty()) AddLinks(adjacency, links);
-}
-
-void PieceGraph::AddLinks(const Adjacency& adjacency, const FaceLinks& links) {
+  if (links.empty()) return;
   for (uint32_t f = 0; f < group_of_face_.size(); ++f)
     for (uint32_t g : links.Of(f))
-      if (f < g && group_of_face_[f] != group_of_face_[g])
-        boundaries_[std::minmax(group_of_face_[f], group_of_face_[g])]
-            .push_back(adjacency.FaceEdges(f)[0]);
-  for (auto& [pair, edges] : boundaries_) {
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      if (group_of_face_[f] < group_of_face_[g])
+        boundaries_.try_emplace({group_of_face_[f], group_of_face_[g]});
+  FindShells(adjacency, face_areas);
+}
+
+void PieceGraph::FindShells(const Adjacency& adjacency,
+                            const std::vector<double>& face_areas) {
+  const std::vector<uint32_t> shell = ConnectedPieces(
+      adjacency, std::vector<uint32_t>(group_of_face_.size(), 0));
+  shell_areas_.resize(*std::max_element(shell.begin(), shell.end()) + 1);
+  for (uint32_t f = 0; f < shell.size(); ++f)
+    shell_areas_[shell[f]] += face_areas[f];
+  for (const auto& faces : faces_) {
+    std::vector<uint32_t>& own = shells_.emplace_back();
+    for (uint32_t f : faces) own.push_back(shell[f]);
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
   }
+}
+
+double PieceGraph::AreaOfShells(uint32_t group) const {
+  if (shells_.empty()) return areas_[group];
+  double area = 0;
+  for (uint32_t shell : shells_[group]) area += shell_areas_[shell];
+  return area;
+}
+
+std::vector<uint32_t> PieceGraph::Groups() const {
+  std::vector<uint32_t> groups;
+  for (uint32_t g = 0; g < faces_.size(); ++g)
+    if (!faces_[g].empty()) groups.push_back(g);
+  return groups;
 }
 
 void PieceGraph::Merge(uint32_t a, uint32_t b) {
@@ -51,6 +75,12 @@ void PieceGraph::Merge(uint32_t a, uint32_t b) {
   faces_[b] = {};
   areas_[a] += areas_[b];
   areas_[b] = 0;
+  if (!shells_.empty()) {
+    std::vector<uint32_t> joined;
+    std::set_union(shells_[a].begin(), shells_[a].end(), shells_[b].begin(),
+                   shells_[b].end(), std::back_inserter(joined));
+    shells_[a] = std::move(joined);
+  }
   boundaries_.erase({a, b});
   std::map<Pair, Boundary> moved;
   for (auto it = boundaries_.begin(); it != boundaries_.end();) {

@@ -14,12 +14,11 @@ namespace marrow {
 
 // Groups of pieces. A group is named by its least piece; at first every piece
 // is a group of its own. Two groups have a boundary where an edge has faces of
-// both, or a link joins faces of both: the first edge of the lesser of the two
-// faces stands for it. Not thread safe.
+// both, or a link joins faces of both. Not thread safe.
 //
 // Invariants: the groups partition the faces; every edge whose faces are of
-// different groups, and every edge that stands for a link between such, is in
-// the boundary of each such pair, once.
+// different groups is in the boundary of each such pair, once. A boundary of
+// links alone has no edges.
 class PieceGraph {
  public:
   // The lesser group first.
@@ -37,18 +36,27 @@ class PieceGraph {
   // Face -> its group.
   const std::vector<uint32_t>& group_of_face() const { return group_of_face_; }
   double Area(uint32_t group) const { return areas_[group]; }
+  // That of all shells of which the group has faces: what edges connect.
+  double AreaOfShells(uint32_t group) const;
   const std::map<Pair, Boundary>& boundaries() const { return boundaries_; }
 
+  // Those that are left, ascending.
+  std::vector<uint32_t> Groups() const;
+
   // Makes one group, a, of the groups a < b.
-  // REQUIRES: they have a boundary.
   void Merge(uint32_t a, uint32_t b);
 
  private:
-  void AddLinks(const Adjacency& adjacency, const FaceLinks& links);
+  void FindShells(const Adjacency& adjacency,
+                  const std::vector<double>& face_areas);
 
   std::vector<uint32_t> group_of_face_;
   std::vector<std::vector<uint32_t>> faces_;
   std::vector<double> areas_;
+  // Where there are links: the shells of each group, ascending, and the area of
+  // each shell.
+  std::vector<std::vector<uint32_t>> shells_;
+  std::vector<double> shell_areas_;
   std::map<Pair, Boundary> boundaries_;
 };
 

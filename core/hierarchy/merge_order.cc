@@ -30,7 +30,27 @@ void Update(const PieceGraph& graph, const PieceGraph::Pair& merged,
   });
   for (const auto& [pair, edges] : graph.boundaries())
     if (pair.first == a || pair.second == a)
-      strengths[pair] = Strength(meter.MeasureBoundary(graph, pair));
+      strengths[pair] = meter.StrengthBetween(graph, pair);
+}
+
+// Shells that touch in a vertex, and have no boundary: the smallest goes with
+// the largest.
+void MergeShells(PieceGraph& graph, BoundaryMeter& meter, double end,
+                 double salience, MergeOrder& order) {
+  std::vector<uint32_t> shells = graph.Groups();
+  std::stable_sort(shells.begin(), shells.end(), [&](uint32_t x, uint32_t y) {
+    return graph.Area(x) < graph.Area(y);
+  });
+  uint32_t largest = shells.back();
+  shells.pop_back();
+  for (uint32_t shell : shells) {
+    const PieceGraph::Pair pair = std::minmax(shell, largest);
+    salience = std::max(salience, meter.StrengthBetween(graph, pair));
+    if (salience >= end) return;
+    order.merges.push_back({pair.first, pair.second, salience});
+    graph.Merge(pair.first, pair.second);
+    largest = pair.first;
+  }
 }
 
 }  // namespace
@@ -76,7 +96,7 @@ absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
   Strengths strengths;
   for (const auto& [pair, edges] : graph.boundaries()) {
     MARROW_RETURN_IF_ERROR(cancel.Check());
-    strengths[pair] = Strength(meter.MeasureBoundary(graph, pair));
+    strengths[pair] = meter.StrengthBetween(graph, pair);
   }
   double salience = 0;
   while (!strengths.empty()) {
@@ -88,6 +108,7 @@ absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
     graph.Merge(pair.first, pair.second);
     Update(graph, pair, meter, strengths);
   }
+  if (strengths.empty()) MergeShells(graph, meter, end, salience, order);
   return order;
 }
 

@@ -28,7 +28,7 @@ struct PieceMerge {
 };
 
 // Invariants: every merge joins two groups; salience never falls. Pieces that
-// share no edge, directly or through others, never merge.
+// share no edge, directly or through others, merge last.
 struct MergeOrder {
   uint32_t num_pieces = 0;
   std::vector<PieceMerge> merges;
@@ -47,8 +47,8 @@ struct MergeOrder {
   std::vector<double> InnerSalience(const std::vector<uint32_t>& cut) const;
 };
 
-// Merges until no boundary is left, or none of less salience than `end`. Equal
-// strengths merge in the order of their pairs. Errors: CANCELLED.
+// Merges until one group is left, or no boundary of less salience than `end`.
+// Equal strengths merge in the order of their pairs. Errors: CANCELLED.
 absl::StatusOr<MergeOrder> MergePieces(
     PieceGraph graph, BoundaryMeter& meter, const CancelToken& cancel,
     double end = std::numeric_limits<double>::infinity());

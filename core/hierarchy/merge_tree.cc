@@ -18,6 +18,7 @@
 #include "core/hierarchy/level_tree.h"
 #include "core/hierarchy/tree_builder.h"
 #include "core/operators/laplacian.h"
+#include "core/pieces/region.h"
 
 namespace marrow {
 namespace {
@@ -59,6 +60,15 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
     p = static_cast<uint32_t>(
         std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());
   return Pieces{std::move(piece), builder.tree().nodes[0].stop_reason};
+}
+
+// Fronts cross from shell to shell; where one ends there must be a boundary, or
+// none could be kept.
+std::vector<uint32_t> OfOneShell(const SplitContext& context,
+                                 std::vector<uint32_t> piece_of_face) {
+  return context.links.empty()
+             ? std::move(piece_of_face)
+             : ConnectedPieces(context.adjacency, piece_of_face);
 }
 
 // What boundaries are measured on.
@@ -131,10 +141,10 @@ absl::StatusOr<MergeTree> BuildMergeTree(
       std::launch::async, [&] { return MeasureSurface(context, cancel); });
   MARROW_ASSIGN_OR_RETURN(Pieces pieces, FindPieces(context, split, mesh_area,
                                                     cancel, pull, progress));
-  result.piece_of_face = std::move(pieces.of_face);
+  result.piece_of_face = OfOneShell(context, std::move(pieces.of_face));
   MARROW_ASSIGN_OR_RETURN(const Surface surface, measured.get());
   BoundaryMeter meter(surface.mesh, context.adjacency, surface.areas,
-                      surface.curvature);
+                      surface.curvature, context.share);
   MARROW_RETURN_IF_ERROR(
       PlaceBoundaries(context, surface, meter, cancel, result.piece_of_face));
   MARROW_ASSIGN_OR_RETURN(
@@ -147,7 +157,8 @@ absl::StatusOr<MergeTree> BuildMergeTree(
       result.tree,
       BuildLevelTree(context, split, mesh_area, result.piece_of_face,
                      result.order, std::span(kLevelSalience, count), cancel));
-  if (pieces.stop_reason != StopReason::kNone)
+  if (result.tree.nodes[0].children.empty() &&
+      pieces.stop_reason != StopReason::kNone)
     result.tree.nodes[0].stop_reason = pieces.stop_reason;
   progress(1);
   return result;

@@ -10,6 +10,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/submesh.h"
 #include "core/operators/laplacian.h"
+#include "core/operators/seams.h"
 
 namespace marrow {
 namespace {
@@ -206,9 +207,37 @@ void Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
   }
 }
 
+// Vertices that are sewn together become one, where the least of them is.
+void Sew(const std::vector<uint32_t>& sewn, Submesh& own, Body& body) {
+  TriangleMesh& mesh = own.canonical.mesh;
+  std::vector<uint32_t> number(sewn.size());
+  uint32_t count = 0;
+  for (uint32_t v = 0; v < sewn.size(); ++v) {
+    if (sewn[v] != v) {
+      number[v] = number[sewn[v]];
+      body.seams.push_back({own.vertices[sewn[v]], own.vertices[v]});
+      continue;
+    }
+    number[v] = count;
+    mesh.positions.row(count) = mesh.positions.row(v);
+    own.vertices[count++] = own.vertices[v];
+  }
+  if (body.seams.empty()) return;
+  mesh.positions.conservativeResize(count, 3);
+  own.vertices.resize(count);
+  for (Triangle& face : mesh.faces)
+    for (uint32_t& v : face) v = number[v];
+  own.canonical.report = ReportOn(mesh);
+  own.canonical.geometry_digest = GeometryDigestOf(mesh);
+}
+
 Body MakeBody(const TriangleMesh& mesh, Part part) {
   Submesh own = ExtractFaces(mesh, part.faces);
   Body body;
+  if (part.components > 1) {
+    const TriangleMesh& shells = own.canonical.mesh;
+    Sew(SewRims(shells, BridgingDistance(shells)), own, body);
+  }
   body.bridges = FindBridges(own.canonical.mesh);
   body.canonical =
       std::make_shared<const CanonicalMesh>(std::move(own.canonical));
@@ -292,7 +321,7 @@ Bodies SortOut(CanonicalMesh& mesh) {
     attached.push_back(std::move(part));
   Note(parts, attached, distance, mesh.report);
 
-  if (parts.size() == 1 && attached.empty()) {
+  if (parts.size() == 1 && attached.empty() && parts[0].components == 1) {
     result.bodies.push_back(WholeBody(mesh));
   } else {
     for (Part& part : parts)
@@ -320,7 +349,8 @@ Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
 
 uint32_t PairsOfBody(const Body& body, uint32_t count) {
   constexpr uint32_t kLeast = 30;
-  const double share = std::ceil(body.share * count);
+  // Not one more for what rounding adds to the share.
+  const double share = std::ceil(body.share * count - 1e-6);
   return std::min(count, std::max(kLeast, static_cast<uint32_t>(share)));
 }
 

@@ -8,8 +8,9 @@
 //     kLightWeight; the largest always is.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
 //     weight are one body, through any number of others. A body has one
-//     operator, one spectrum and one tree, and its shells are bridged: it is
-//     segmented as if they had grown together.
+//     operator, one spectrum and one tree: it is segmented as if its shells had
+//     grown together. Their rims are sewn where they face each other
+//     (core/operators/seams.h), and what stays apart is bridged.
 //  3. A body of at least kBodyShare of the largest is a segment of its own, a
 //     child of the root, if there are several; of the kMaxBodies largest.
 //  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
@@ -42,14 +43,17 @@ inline constexpr uint32_t kLargeBody = 80'000;
 inline constexpr uint32_t kCoarseVertices = 40'000;
 
 struct Body {
-  // A submesh, or, where nothing is attached and there is one body, the whole
+  // A submesh, its shells sewn, or, where there is one component, the whole
   // mesh itself, which must then outlive this.
   std::shared_ptr<const CanonicalMesh> canonical;
   std::shared_ptr<const CoarseMesh> coarse;  // of canonical; null for most
   std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
   std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
   std::vector<Bridge> bridges;     // between its shells, own vertices
-  double share = 1;                // of the area of all bodies
+  // Vertices of the whole mesh that are one of this: which of them `vertices`
+  // has, and another.
+  std::vector<Bridge> seams;
+  double share = 1;  // of the area of all bodies
 
   // What is computed on.
   const CanonicalMesh& Computed() const {
@@ -66,7 +70,8 @@ struct Bodies {
 
   // Whether the whole mesh is one body, so that nothing need be mapped.
   bool IsWhole() const {
-    return bodies.size() == 1 && bodies[0].faces.size() == anchors.size();
+    return bodies.size() == 1 && bodies[0].faces.size() == anchors.size() &&
+           bodies[0].seams.empty();
   }
   // Whether what is computed on is the whole mesh.
   bool IsComputedWhole() const {

@@ -73,6 +73,7 @@ struct SplitContext {
   const std::vector<double>& face_areas;  // in units of the mesh's whole area
   // Where the fronts step from shell to shell, as the operator does.
   FaceLinks links = {};
+  double share = 1;  // of the mesh in the area of all bodies
 };
 
 struct Piece {

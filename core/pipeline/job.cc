@@ -27,9 +27,12 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies) {
                     Adjacency(canonical.mesh),
                     FaceAreaShares(canonical.mesh),
                     {}};
-  for (const Body& body : bodies.bodies)
+  for (const Body& body : bodies.bodies) {
     for (const auto& [u, v] : body.bridges)
       prepared.bridges.push_back({body.vertices[u], body.vertices[v]});
+    prepared.bridges.insert(prepared.bridges.end(), body.seams.begin(),
+                            body.seams.end());
+  }
   return prepared;
 }
 
@@ -51,13 +54,15 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
                : std::make_shared<const Own>(body.Computed().mesh)),
       stream_(std::move(stream)),
       pulled_{std::make_shared<const EigenPairs>(), 0},
-      context_{body.Computed().mesh,
-               own_ ? own_->adjacency : prepared.adjacency, pulled_,
-               own_ ? own_->areas : prepared.areas,
-               FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
-                         body.coarse == nullptr
-                             ? body.bridges
-                             : FindBridges(body.Computed().mesh))} {}
+      context_{
+          body.Computed().mesh,
+          own_ ? own_->adjacency : prepared.adjacency,
+          pulled_,
+          own_ ? own_->areas : prepared.areas,
+          FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
+                    body.coarse == nullptr ? body.bridges
+                                           : FindBridges(body.Computed().mesh)),
+          body.share} {}
 
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,

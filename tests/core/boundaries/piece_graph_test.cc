@@ -98,7 +98,7 @@ TEST(PieceGraphTest, LinksAreBoundariesToo) {
   const FaceLinks links(adjacency, bridges);
   PieceGraph graph(adjacency, shell, FaceAreaShares(mesh), links);
   ASSERT_EQ(graph.boundaries().size(), 1u);
-  EXPECT_EQ(graph.boundaries().at({0, 1}).size(), 2u);
+  EXPECT_TRUE(graph.boundaries().at({0, 1}).empty());
   graph.Merge(0, 1);
   EXPECT_TRUE(graph.boundaries().empty());
   EXPECT_TRUE(

@@ -88,14 +88,18 @@ TEST(MergePiecesTest, EndsWhereItIsTold) {
   EXPECT_EQ(order.CutAt(end), whole.CutAt(end));
 }
 
-TEST(MergePiecesTest, ShellsStayApart) {
+// The smaller with the larger, and as easily as it is small.
+TEST(MergePiecesTest, ShellsMergeLast) {
   const TriangleMesh mesh = Apart(Icosphere(2), Icosphere(2));
   std::vector<uint32_t> pieces(mesh.NumFaces());
   for (uint32_t f = 0; f < pieces.size(); ++f)
     pieces[f] = 4 * f / static_cast<uint32_t>(pieces.size());
   const MergeOrder order = Merged(mesh, pieces);
-  EXPECT_EQ(order.merges.size(), 2u);
-  EXPECT_THAT(order.CutAt(2), ElementsAre(0, 0, 2, 2));
+  ASSERT_EQ(order.merges.size(), 3u);
+  EXPECT_THAT(order.CutInto(2), ElementsAre(0, 0, 2, 2));
+  EXPECT_THAT(order.CutInto(1), ElementsAre(0, 0, 0, 0));
+  EXPECT_GT(order.merges[2].salience, kLevelSalience[0]);
+  EXPECT_LT(order.merges[2].salience, 1);
 }
 
 TEST(MergePiecesTest, StopsOnceCancelled) {

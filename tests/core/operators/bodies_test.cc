@@ -97,7 +97,14 @@ TEST(BodiesTest, ManyLightComponentsOfWeightAreBridged) {
     plates.back().positions.col(1).array() += 4.2 * (i / 20);
   }
   CanonicalMesh mesh = CanonicalOf(Together(plates));
-  EXPECT_TRUE(FindBodies(mesh).IsWhole());
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 1u);
+  EXPECT_EQ(bodies.bodies[0].faces.size(), mesh.mesh.NumFaces());
+  // Grown together at their corners and sides, so that it is not the mesh.
+  EXPECT_FALSE(bodies.IsWhole());
+  EXPECT_TRUE(bodies.bodies[0].bridges.empty());
+  EXPECT_EQ(bodies.bodies[0].seams.size() + bodies.bodies[0].vertices.size(),
+            mesh.mesh.NumVertices());
   EXPECT_EQ(mesh.report.bridged_components, 400u);
 }
 

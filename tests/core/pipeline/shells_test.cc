@@ -110,23 +110,27 @@ std::vector<uint32_t> FirstOf(std::vector<uint32_t> labels, size_t count) {
 
 class ShellsTest : public ::testing::TestWithParam<std::string> {};
 
+// Caps are walls inside the limbs that the whole body has not.
 TEST_P(ShellsTest, CutAtTheJointsAreOneBody) {
   const CreatureMesh creature = MakeCreature(GetParam());
-  const RecordingSink whole = RunOn(creature.mesh, Levels(1));
   const TriangleMesh open =
       CutAtJoints(creature, 0.005 * Diagonal(creature.mesh));
-  // Caps are walls inside the limbs that the whole body has not.
-  const std::vector<std::pair<TriangleMesh, double>> cuts = {
-      {open, 0.08}, {Capped(open), 0.12}};
-  for (const auto& [cut, tolerance] : cuts) {
-    const RecordingSink run = RunOn(cut, Levels(1));
-    EXPECT_GT(run.mesh.report.components, 4u);
-    EXPECT_EQ(run.mesh.report.bodies, 1u);
-    EXPECT_EQ(run.mesh.report.bridged_components, run.mesh.report.components);
-    EXPECT_LE(RandIndexDifference(
-                  FirstOf(run.levels[0].face_labels, creature.mesh.NumFaces()),
-                  whole.levels[0].face_labels),
-              tolerance);
+  for (Method method : {Method::kPaper, Method::kMerge}) {
+    const RecordingSink whole = RunOn(creature.mesh, Levels(1, method));
+    const std::vector<std::pair<TriangleMesh, double>> cuts = {
+        {open, 0.08}, {Capped(open), 0.12}};
+    for (const auto& [cut, tolerance] : cuts) {
+      SCOPED_TRACE(testing::Message() << "method " << static_cast<int>(method)
+                                      << " within " << tolerance);
+      const RecordingSink run = RunOn(cut, Levels(1, method));
+      EXPECT_GT(run.mesh.report.components, 4u);
+      EXPECT_EQ(run.mesh.report.bodies, 1u);
+      EXPECT_EQ(run.mesh.report.bridged_components, run.mesh.report.components);
+      EXPECT_LE(RandIndexDifference(FirstOf(run.levels[0].face_labels,
+                                            creature.mesh.NumFaces()),
+                                    whole.levels[0].face_labels),
+                tolerance);
+    }
   }
 }
 

@@ -1,0 +1,24 @@
+// Rims of different components that face each other, sewn together.
+#ifndef MARROW_CORE_OPERATORS_SEAMS_H_
+#define MARROW_CORE_OPERATORS_SEAMS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// Vertex -> the least of those that it is to be one with, itself where there
+// are none. A rim is what edges of one face connect. A vertex of a rim goes
+// with the nearest one of the rims of other components, within `longest`, in
+// units of the positions: first those that are nearest to each other, then the
+// others, but for those that would take a face with them. So limbs that were
+// cut off along a joint grow on again, and the surface goes through the joint
+// as if it had never been cut. Components are connected through shared
+// vertices. Deterministic, O(n log^2 n), thread safe.
+std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest);
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_OPERATORS_SEAMS_H_

@@ -1,0 +1,85 @@
+#include "core/operators/seams.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/mesh/adjacency.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+// Vertices of an open tube around z with `around` on each of its rings.
+TriangleMesh Tube(uint32_t around, uint32_t rings, double from, double turn) {
+  TriangleMesh mesh;
+  mesh.positions.resize(around * rings, 3);
+  for (uint32_t ring = 0; ring < rings; ++ring)
+    for (uint32_t i = 0; i < around; ++i) {
+      const double angle = 2 * 3.141592653589793 * (i + turn) / around;
+      mesh.positions.row(ring * around + i) << std::cos(angle), std::sin(angle),
+          from + 0.3 * ring;
+    }
+  for (uint32_t ring = 0; ring + 1 < rings; ++ring)
+    for (uint32_t i = 0; i < around; ++i) {
+      const uint32_t a = ring * around + i;
+      const uint32_t b = ring * around + (i + 1) % around;
+      mesh.faces.push_back({a, b, b + around});
+      mesh.faces.push_back({a, b + around, a + around});
+    }
+  return mesh;
+}
+
+TriangleMesh Both(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both = a;
+  both.positions.conservativeResize(a.NumVertices() + b.NumVertices(), 3);
+  both.positions.bottomRows(b.NumVertices()) = b.positions;
+  const uint32_t n = a.NumVertices();
+  for (const Triangle& f : b.faces)
+    both.faces.push_back({f[0] + n, f[1] + n, f[2] + n});
+  return both;
+}
+
+size_t CountSewn(const std::vector<uint32_t>& sewn) {
+  size_t count = 0;
+  for (uint32_t v = 0; v < sewn.size(); ++v) {
+    EXPECT_LE(sewn[v], v);
+    EXPECT_EQ(sewn[sewn[v]], sewn[v]);
+    count += sewn[v] != v;
+  }
+  return count;
+}
+
+TEST(SeamsTest, FacingRimsBecomeOne) {
+  const TriangleMesh mesh =
+      Both(Tube(12, 4, 0, 0), Tube(12, 4, 0.95, 0.2));  // ends at .9
+  const std::vector<uint32_t> sewn = SewRims(mesh, 0.3);
+  EXPECT_EQ(CountSewn(sewn), 12u);
+  // Corner by corner, all the way round.
+  std::set<uint32_t> upper;
+  for (uint32_t v = 48; v < 60; ++v) upper.insert(sewn[v]);
+  EXPECT_EQ(upper.size(), 12u);
+  EXPECT_EQ(*upper.begin(), 36u);
+  EXPECT_EQ(*upper.rbegin(), 47u);
+  // No farther than allowed.
+  EXPECT_EQ(CountSewn(SewRims(mesh, 0.04)), 0u);
+}
+
+TEST(SeamsTest, NoFaceIsLost) {
+  // Two vertices of the upper rim for each of the lower.
+  const TriangleMesh mesh = Both(Tube(12, 4, 0, 0), Tube(24, 4, 0.95, 0));
+  const std::vector<uint32_t> sewn = SewRims(mesh, 0.6);
+  EXPECT_GE(CountSewn(sewn), 12u);
+  for (const auto& [a, b, c] : mesh.faces)
+    EXPECT_TRUE(sewn[a] != sewn[b] && sewn[b] != sewn[c] && sewn[c] != sewn[a]);
+}
+
+// The two rims of one tube are not sewn, nor is what has none.
+TEST(SeamsTest, OnlyRimsOfDifferentComponents) {
+  EXPECT_EQ(CountSewn(SewRims(Tube(12, 2, 0, 0), 1)), 0u);
+  EXPECT_EQ(CountSewn(SewRims(Both(Icosphere(1), Tube(12, 2, 1.05, 0)), 1)),
+            0u);
+}
+
+}  // namespace
+}  // namespace marrow
