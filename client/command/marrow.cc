@@ -36,6 +36,8 @@ int main(int argc, char** argv) {
   // A reader that went away, as in `marrow spectrum x.off | head`, is no
   // reason to leave results half written.
   std::signal(SIGPIPE, OnBrokenPipe);
+  // A file that may grow no more is as good as a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   OpenStandardStreams();
   const int code = marrow::client::RunCommandLine(argc, argv);
   if (code > marrow::client::kExitSignal) {

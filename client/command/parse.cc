@@ -140,7 +140,7 @@ void AddService(CLI::App& app, ServiceArguments& service) {
       ->type_name("SECONDS");
   app.add_option("--quantize", service.quantize,
                  "Send coordinates with this many bits, 1 to 30; without it "
-                 "as 32-bit floats")
+                 "exactly")
       ->check(CLI::Range(1, 30))
       ->type_name("BITS");
   app.add_flag("--json", service.json, "Write JSON to standard output");
@@ -168,7 +168,8 @@ void AddMethod(CLI::App& app, MethodArguments& arguments) {
       ->transform(CLI::CheckedTransformer(methods).description(""))
       ->type_name("NAME");
   app.add_option("--kappa", arguments.kappa,
-                 "Higher gives fewer segments, 0.1 to 10 (1.5)")
+                 "Of --method paper: higher gives fewer segments, 0.1 to 10 "
+                 "(1.5)")
       ->check(CheckNumber)
       ->type_name("X");
   app.add_option("--delta", arguments.delta,
@@ -184,7 +185,8 @@ void AddMethod(CLI::App& app, MethodArguments& arguments) {
       ->check(CheckNumber)
       ->type_name("X");
   AddPairs(app, "--pairs", arguments.pairs);
-  app.add_option("--levels", arguments.levels, "Depth of the tree, 1 to 8 (3)")
+  app.add_option("--levels", arguments.levels,
+                 "Depth of the tree, 1 to 8; merged pieces have 3 (3)")
       ->check(CheckWholeNumber)
       ->type_name("N");
 }

@@ -42,6 +42,13 @@ absl::Status CheckOutputs(const SampleArguments& arguments) {
         "--parts needs a mesh that keeps its face order: use -o with .off, "
         ".obj, .ply or .stl");
   }
+  std::error_code ignored;
+  if (!arguments.parts.empty() &&
+      std::filesystem::weakly_canonical(arguments.parts, ignored) ==
+          std::filesystem::weakly_canonical(arguments.output, ignored)) {
+    return absl::InvalidArgumentError(
+        "--parts and -o are one file: give --parts another name");
+  }
   return absl::OkStatus();
 }
 

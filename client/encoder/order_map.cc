@@ -52,23 +52,30 @@ absl::Status CheckCount(size_t got, size_t expected, const char* what) {
                                           " labels for ", expected, " ", what));
 }
 
-// The label with the largest share of the area. Shares that differ by rounding
-// alone count as equal, and the least label wins.
-uint32_t Majority(std::vector<std::pair<uint32_t, double>>& shares) {
-  std::sort(shares.begin(), shares.end());
-  double total = 0;
-  for (const auto& [label, area] : shares) total += area;
+// Of the triangles [begin, end) of a polygon that are in the payload the one
+// with the largest area; kNone without any. Areas that differ by rounding alone
+// are equal: then the one whose corners sum up to the least position, wherever
+// in the file the polygon begins.
+uint32_t LargestTriangle(const PolygonMesh& mesh, const PayloadOrigin& origin,
+                         const std::vector<uint32_t>& decoded_face,
+                         uint32_t begin, uint32_t end) {
   constexpr double kRounding = 1e-9;
-  uint32_t best = shares.front().first;
-  double best_area = -1;
-  for (size_t i = 0; i < shares.size();) {
-    const uint32_t label = shares[i].first;
-    double area = 0;
-    for (; i < shares.size() && shares[i].first == label; ++i) {
-      area += shares[i].second;
-    }
-    if (area <= best_area + kRounding * total) continue;
-    best = label;
+  const auto sum = [&](uint32_t t) {
+    std::array<double, 3> sum{};
+    for (uint32_t v : origin.triangles[t])
+      for (int i = 0; i < 3; ++i) sum[i] += mesh.positions[v][i];
+    return sum;
+  };
+  uint32_t best = kNone;
+  double best_area = 0;
+  for (uint32_t t = begin; t < end; ++t) {
+    if (decoded_face[t] == kNone) continue;
+    const double area = Area(mesh, origin.triangles[t]);
+    if (best != kNone &&
+        (area < best_area * (1 - kRounding) ||
+         (area <= best_area * (1 + kRounding) && sum(t) >= sum(best))))
+      continue;
+    best = t;
     best_area = area;
   }
   return best;
@@ -78,24 +85,22 @@ uint32_t Majority(std::vector<std::pair<uint32_t, double>>& shares) {
 
 OrderMap::OrderMap(const PolygonMesh& mesh, const PayloadOrigin& origin)
     : num_decoded_faces_(
-          static_cast<uint32_t>(origin.triangle_of_decoded_face.size())),
-      triangle_begin_(origin.triangle_begin),
-      decoded_face_of_triangle_(origin.triangles.size(), kNone) {
-  triangle_area_.reserve(origin.triangles.size());
-  for (const auto& triangle : origin.triangles) {
-    triangle_area_.push_back(Area(mesh, triangle));
-  }
-  for (uint32_t d = 0; d < num_decoded_faces_; ++d) {
-    decoded_face_of_triangle_[origin.triangle_of_decoded_face[d]] = d;
-  }
-
-  std::vector<bool> in_payload(mesh.NumFaces(), false);
+          static_cast<uint32_t>(origin.triangle_of_decoded_face.size())) {
+  std::vector<uint32_t> decoded_face(origin.triangles.size(), kNone);
+  for (uint32_t d = 0; d < num_decoded_faces_; ++d)
+    decoded_face[origin.triangle_of_decoded_face[d]] = d;
+  std::vector<uint32_t> triangle(mesh.NumFaces());
+  std::vector<bool> in_payload(mesh.NumFaces());
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
-    for (uint32_t t = triangle_begin_[f]; t < triangle_begin_[f + 1]; ++t) {
-      if (decoded_face_of_triangle_[t] != kNone) in_payload[f] = true;
-    }
+    triangle[f] =
+        LargestTriangle(mesh, origin, decoded_face, origin.triangle_begin[f],
+                        origin.triangle_begin[f + 1]);
+    in_payload[f] = triangle[f] != kNone;
   }
-  face_in_payload_ = FindStandIns(mesh, origin.site_of_vertex, in_payload);
+  const std::vector<uint32_t> stand_in =
+      FindStandIns(mesh, origin.site_of_vertex, in_payload);
+  for (uint32_t f : stand_in)
+    decoded_face_of_face_.push_back(decoded_face[triangle[f]]);
 
   const std::vector<bool> used = UsedVertices(mesh);
   const std::vector<uint32_t> representative = RepresentVertices(origin, used);
@@ -111,28 +116,11 @@ OrderMap::OrderMap(const PolygonMesh& mesh, const PayloadOrigin& origin)
   }
   for (size_t f = 0; f < mesh.NumFaces(); ++f) {
     if (in_payload[f]) continue;
-    const uint32_t t = [&] {
-      uint32_t triangle = triangle_begin_[face_in_payload_[f]];
-      while (decoded_face_of_triangle_[triangle] == kNone) ++triangle;
-      return triangle;
-    }();
-    const uint32_t stand_in =
-        point_of_site[origin.site_of_vertex[origin.triangles[t][0]]];
-    for (const uint32_t v : mesh.Face(f)) {
-      if (point_of_vertex_[v] == kNone) point_of_vertex_[v] = stand_in;
-    }
+    const uint32_t corner = origin.triangles[triangle[stand_in[f]]][0];
+    const uint32_t point = point_of_site[origin.site_of_vertex[corner]];
+    for (const uint32_t v : mesh.Face(f))
+      if (point_of_vertex_[v] == kNone) point_of_vertex_[v] = point;
   }
-}
-
-uint32_t OrderMap::LabelOfFace(uint32_t face,
-                               std::span<const uint32_t> labels) const {
-  std::vector<std::pair<uint32_t, double>> shares;
-  for (uint32_t t = triangle_begin_[face]; t < triangle_begin_[face + 1]; ++t) {
-    const uint32_t decoded = decoded_face_of_triangle_[t];
-    if (decoded == kNone) continue;
-    shares.emplace_back(labels[decoded], triangle_area_[t]);
-  }
-  return shares.size() == 1 ? shares[0].first : Majority(shares);
 }
 
 absl::StatusOr<std::vector<uint32_t>> OrderMap::FaceLabelsInFileOrder(
@@ -140,10 +128,9 @@ absl::StatusOr<std::vector<uint32_t>> OrderMap::FaceLabelsInFileOrder(
   MARROW_RETURN_IF_ERROR(
       CheckCount(decoded_face_labels.size(), num_decoded_faces_, "faces"));
   std::vector<uint32_t> labels;
-  labels.reserve(face_in_payload_.size());
-  for (const uint32_t face : face_in_payload_) {
-    labels.push_back(LabelOfFace(face, decoded_face_labels));
-  }
+  labels.reserve(decoded_face_of_face_.size());
+  for (const uint32_t face : decoded_face_of_face_)
+    labels.push_back(decoded_face_labels[face]);
   return labels;
 }
 

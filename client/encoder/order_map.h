@@ -38,9 +38,9 @@ class OrderMap {
     return static_cast<uint32_t>(vertex_of_point_.size());
   }
 
-  // A label a face of the file. The triangles of a polygon share the label that
-  // has most of its area, of equals the least. INTERNAL unless there is a label
-  // a decoded face.
+  // A label a face of the file. A polygon has that of its largest triangle,
+  // whatever the labels: so what is nested on triangles is on polygons.
+  // INTERNAL unless there is a label a decoded face.
   absl::StatusOr<std::vector<uint32_t>> FaceLabelsInFileOrder(
       std::span<const uint32_t> decoded_face_labels) const;
 
@@ -56,14 +56,9 @@ class OrderMap {
       std::span<const uint32_t> decoded_points) const;
 
  private:
-  uint32_t LabelOfFace(uint32_t face, std::span<const uint32_t> labels) const;
-
   uint32_t num_decoded_faces_ = 0;
-  std::vector<uint32_t> triangle_begin_;
-  std::vector<double> triangle_area_;
-  std::vector<uint32_t> decoded_face_of_triangle_;  // or kNone
-  std::vector<uint32_t> face_in_payload_;  // a file face -> itself or stand-in
-  std::vector<uint32_t> point_of_vertex_;  // or kNone
+  std::vector<uint32_t> decoded_face_of_face_;  // its own or a stand-in's
+  std::vector<uint32_t> point_of_vertex_;       // or kNone
   std::vector<uint32_t> vertex_of_point_;
 };
 

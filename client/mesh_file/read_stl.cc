@@ -38,11 +38,12 @@ uint64_t DeclaredBytes(std::string_view bytes) {
 }
 
 // Binary files whose header begins with "solid" are common, so the size
-// decides before the text does.
+// decides before the text does, and so does a byte that no text has.
 bool IsBinary(std::string_view bytes) {
   if (bytes.size() >= kHeaderBytes && DeclaredBytes(bytes) == bytes.size()) {
     return true;
   }
+  if (bytes.substr(0, 1024).find('\0') != std::string_view::npos) return true;
   TextScanner scanner("", bytes.substr(0, kHeaderBytes));
   return !Is(scanner.NextTokenAcrossLines(), "solid");
 }

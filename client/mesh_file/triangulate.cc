@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -119,10 +120,18 @@ void CutFan(std::span<const uint32_t> corners,
 
 void Triangulate(const PolygonMesh& mesh, size_t f,
                  std::vector<std::array<uint32_t, 3>>* triangles) {
-  const std::span<const uint32_t> corners = mesh.Face(f);
-  if (corners.size() <= 3 || corners.size() > kMaxClippedCorners) {
-    return CutFan(corners, triangles);
-  }
+  const std::span<const uint32_t> face = mesh.Face(f);
+  if (face.size() <= 3) return CutFan(face, triangles);
+  // From the corner with the least position: a face that is there twice, once
+  // from behind, is cut along the same lines.
+  std::vector<uint32_t> corners(face.begin(), face.end());
+  std::rotate(corners.begin(),
+              std::min_element(corners.begin(), corners.end(),
+                               [&](uint32_t a, uint32_t b) {
+                                 return mesh.positions[a] < mesh.positions[b];
+                               }),
+              corners.end());
+  if (corners.size() > kMaxClippedCorners) return CutFan(corners, triangles);
   const std::vector<Point2> points = Flatten(mesh, corners);
   if (FanIsGood(points)) return CutFan(corners, triangles);
   ClipEars(corners, points, triangles);

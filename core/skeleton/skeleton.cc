@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
 
+#include "absl/container/flat_hash_map.h"
 #include "core/base/disjoint_sets.h"
 
 namespace marrow {
 namespace {
 
-// Where two segments meet: their longest connected run of shared edges.
+// Where two segments meet: the shared edges of their longest common opening.
 struct Boundary {
   uint32_t a, b;  // places in the level's list of segments, a < b
   double length = 0;
@@ -20,11 +22,12 @@ struct Boundary {
 };
 
 using EdgeList = std::vector<uint32_t>;
+using SharedEdgesMap = std::map<std::pair<uint32_t, uint32_t>, EdgeList>;
 
 // Edges between each pair of segments, by places.
-std::map<std::pair<uint32_t, uint32_t>, EdgeList> SharedEdges(
-    const Adjacency& adjacency, const std::vector<uint32_t>& place_of_face) {
-  std::map<std::pair<uint32_t, uint32_t>, EdgeList> shared;
+SharedEdgesMap SharedEdges(const Adjacency& adjacency,
+                           const std::vector<uint32_t>& place_of_face) {
+  SharedEdgesMap shared;
   std::vector<uint32_t> around;
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
     around.clear();
@@ -38,31 +41,57 @@ std::map<std::pair<uint32_t, uint32_t>, EdgeList> SharedEdges(
   return shared;
 }
 
-// The longest of the connected runs that the edges form.
-Boundary LongestRun(const TriangleMesh& mesh, const Adjacency& adjacency,
-                    std::pair<uint32_t, uint32_t> places,
-                    const EdgeList& edges) {
-  std::map<uint32_t, uint32_t> local;
-  for (uint32_t e : edges)
-    for (uint32_t v : adjacency.EdgeVertices(e)) local.emplace(v, 0);
-  uint32_t next = 0;
-  for (auto& [vertex, id] : local) id = next++;
-  DisjointSets runs(next);
-  for (uint32_t e : edges) {
-    const auto [u, v] = adjacency.EdgeVertices(e);
-    runs.Union(local[u], local[v]);
+// The openings of segments: what edges between a segment and any others
+// connect. Where a third segment comes between, two runs of a boundary are of
+// the same openings, and one joint.
+class Openings {
+ public:
+  Openings(const Adjacency& adjacency, const SharedEdgesMap& shared) {
+    for (const auto& [places, edges] : shared)
+      for (uint32_t e : edges)
+        for (uint32_t v : adjacency.EdgeVertices(e))
+          for (uint32_t place : {places.first, places.second})
+            numbers_.try_emplace({place, v}, numbers_.size());
+    sets_.emplace(static_cast<uint32_t>(numbers_.size()));
+    for (const auto& [places, edges] : shared)
+      for (uint32_t e : edges) {
+        const auto [u, v] = adjacency.EdgeVertices(e);
+        for (uint32_t place : {places.first, places.second})
+          sets_->Union(numbers_.at({place, u}), numbers_.at({place, v}));
+      }
   }
-  std::vector<Boundary> candidates(next, {places.first, places.second});
+
+  uint32_t Of(uint32_t place, uint32_t v) {
+    return sets_->Find(numbers_.at({place, v}));
+  }
+
+ private:
+  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, uint32_t> numbers_;
+  std::optional<DisjointSets> sets_;
+};
+
+// Of the runs that are of the same openings of both segments, the longest.
+Boundary LongestRun(const TriangleMesh& mesh, const Adjacency& adjacency,
+                    std::pair<uint32_t, uint32_t> places, const EdgeList& edges,
+                    Openings& openings) {
+  std::map<std::pair<uint32_t, uint32_t>, Boundary> candidates;
   for (uint32_t e : edges) {
     const auto [u, v] = adjacency.EdgeVertices(e);
-    Boundary& run = candidates[runs.Find(local[u])];
+    Boundary& run = candidates
+                        .try_emplace({openings.Of(places.first, u),
+                                      openings.Of(places.second, u)},
+                                     Boundary{places.first, places.second})
+                        .first->second;
     const double length = (mesh.Position(u) - mesh.Position(v)).norm();
     run.length += length;
     run.centre += 0.5 * length * (mesh.Position(u) + mesh.Position(v));
   }
-  Boundary longest = *std::max_element(
-      candidates.begin(), candidates.end(),
-      [](const Boundary& x, const Boundary& y) { return x.length < y.length; });
+  Boundary longest =
+      std::max_element(candidates.begin(), candidates.end(),
+                       [](const auto& x, const auto& y) {
+                         return x.second.length < y.second.length;
+                       })
+          ->second;
   longest.centre /= longest.length;
   return longest;
 }
@@ -101,8 +130,10 @@ std::vector<Boundary> FindBoundaries(const TriangleMesh& mesh,
                                      Bridges bridges) {
   std::vector<Boundary> boundaries;
   BoundaryMap bridged = BridgedBoundaries(mesh, adjacency, place, bridges);
-  for (const auto& [places, edges] : SharedEdges(adjacency, place)) {
-    Boundary run = LongestRun(mesh, adjacency, places, edges);
+  const SharedEdgesMap shared = SharedEdges(adjacency, place);
+  Openings openings(adjacency, shared);
+  for (const auto& [places, edges] : shared) {
+    Boundary run = LongestRun(mesh, adjacency, places, edges, openings);
     if (run.length > 0) {
       bridged.erase(places);
       boundaries.push_back(run);

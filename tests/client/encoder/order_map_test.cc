@@ -37,22 +37,22 @@ class OrderMapTest : public ::testing::Test {
   PayloadOrigin origin_;
 };
 
-TEST_F(OrderMapTest, TheLargestShareOfAPolygonWins) {
+TEST_F(OrderMapTest, APolygonHasTheLabelOfItsLargestTriangle) {
   EXPECT_THAT(Labels({3, 8, 3}), ElementsAre(8, 8));  // 2 against 1.5
   EXPECT_THAT(Labels({9, 8, 9}), ElementsAre(8, 8));
   EXPECT_THAT(Labels({3, 9, 9}), ElementsAre(9, 9));
   EXPECT_THAT(Labels({8, 3, 4}), ElementsAre(3, 3));
 }
 
-TEST_F(OrderMapTest, TheLeastOfEqualSharesWins) {
-  mesh_.positions[4] = {-2, 0, 0};  // areas 1, 2 and 1
-  EXPECT_THAT(Labels({5, 7, 5}), ElementsAre(5, 5));
-  EXPECT_THAT(Labels({7, 5, 7}), ElementsAre(5, 5));
+TEST_F(OrderMapTest, OfEqualTrianglesThatOfTheLeastPosition) {
+  mesh_.positions[4] = {-4, 0, 0};  // areas 1, 2 and 2
+  EXPECT_THAT(Labels({5, 7, 3}), ElementsAre(5, 5));
+  EXPECT_THAT(Labels({7, 5, 3}), ElementsAre(7, 7));
 }
 
-TEST_F(OrderMapTest, APolygonWithoutAreaTakesTheLeast) {
+TEST_F(OrderMapTest, APolygonWithoutAreaHasALabelOfItsOwn) {
   mesh_.positions.assign(6, {0, 0, 0});
-  EXPECT_THAT(Labels({5, 4, 7}), ElementsAre(4, 4));
+  EXPECT_THAT(Labels({5, 4, 7}), ElementsAre(7, 7));
 }
 
 TEST_F(OrderMapTest, VerticesTakeTheLabelOfTheirPoint) {

@@ -114,6 +114,31 @@ TEST(SkeletonTest, InACycleEverySegmentHangsOnItsShortestWayToTheRoot) {
               0, 1e-12);
 }
 
+// A strip of the boundary that a third segment takes moves its centre, but does
+// not leave half of it.
+TEST(SkeletonTest, AJointIsInTheMiddleOfItsWholeOpening) {
+  const TriangleMesh mesh = Grid(8, 9);
+  // A square in the middle of the left half's border.
+  const SegmentTree tree =
+      TreeOf(mesh, 3,
+             [](const auto& p) {
+               if (std::abs(p.x() - 4) < 1 && p.y() > 3 && p.y() < 5) return 2u;
+               return p.x() < 4 ? 0u : 1u;
+             },
+             {0});
+  const Skeleton skeleton = BuildSkeleton(mesh, Adjacency(mesh), tree, 1);
+  bool found = false;
+  for (const Joint& joint : skeleton.joints) {
+    if (!joint.articulation || joint.segments != std::vector<uint32_t>{1, 2})
+      continue;
+    found = true;
+    // Of y from 0 to 3 and from 5 to 9.
+    EXPECT_NEAR(joint.position.x(), 4, 1e-12);
+    EXPECT_NEAR(joint.position.y(), (3 * 1.5 + 4 * 7) / 7, 1e-12);
+  }
+  EXPECT_TRUE(found);
+}
+
 TEST(SkeletonTest, NoBoneRunsThroughAMereContact) {
   // Boundaries of 1, 7 and 6 units: the first is less than a quarter of both.
   const TriangleMesh mesh = Grid(8, 8);
