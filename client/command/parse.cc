@@ -95,7 +95,12 @@ the constant function's 0 first. Units are those of the file: an eigenvalue is
 output, and nothing else. A file appears whole or not at all.
 
 Residuals are about 1e-4, with --strict at most 1e-8, which takes up to twice
-the work and is not kept in a server's cache.)";
+the work and is not kept in a server's cache. -o refines the pairs together, so
+that their last digits may depend on how many there are.
+
+Pieces that do not touch are connected where they are nearest, however weakly:
+there is one eigenvalue 0, and a small one for every further piece. For the
+spectrum of one piece, give it in a file of its own.)";
 
 constexpr char kHealthFooter[] =
     R"(Exit code 0 where the server takes calls, 1 where it answers that it does not,

@@ -19,6 +19,7 @@ struct Boundary {
   uint32_t a, b;  // places in the level's list of segments, a < b
   double length = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  bool bridged = false;  // between shells, without a shared edge
 };
 
 using EdgeList = std::vector<uint32_t>;
@@ -117,6 +118,7 @@ BoundaryMap BridgedBoundaries(const TriangleMesh& mesh,
     Boundary& boundary = found[{a, b}];
     boundary.a = a;
     boundary.b = b;
+    boundary.bridged = true;
     boundary.length += rim;
     boundary.centre += 0.5 * rim * (mesh.Position(u) + mesh.Position(v));
   }
@@ -156,7 +158,8 @@ struct Link {
 
 // Boundaries that may carry a bone: those of at least a quarter of the longest
 // of either segment, so that a bone does not run through a mere contact, and
-// those that connect what would else fall apart.
+// those that connect what would else fall apart. Between shells only the
+// latter: a leg hangs on the hip, not on the cloth around both.
 std::vector<Link> StrongLinks(const std::vector<Boundary>& boundaries,
                               DisjointSets& joined) {
   constexpr double kStrong = 0.25;
@@ -166,11 +169,15 @@ std::vector<Link> StrongLinks(const std::vector<Boundary>& boundaries,
       longest.emplace(s, boundary.length);
   std::vector<Link> links;
   for (const Boundary& boundary : boundaries) {
+    if (boundary.bridged) continue;
     const bool connects = joined.Union(boundary.a, boundary.b);
     if (connects || boundary.length >= kStrong * longest[boundary.a] ||
         boundary.length >= kStrong * longest[boundary.b])
       links.push_back({boundary.a, boundary.b, &boundary});
   }
+  for (const Boundary& boundary : boundaries)
+    if (boundary.bridged && joined.Union(boundary.a, boundary.b))
+      links.push_back({boundary.a, boundary.b, &boundary});
   return links;
 }
 
