@@ -72,8 +72,10 @@ class Planter {
       node.salience = old.salience;
       node.iterations = old.iterations;
       node.stop_reason = old.stop_reason;
-      node.medial_structure = ToWhole(old.medial_structure, body.vertices);
-      node.faces = WithAttached(ToWhole(old.faces, body.faces));
+      node.faces = ToWhole(old.faces, body.faces);
+      node.medial_structure =
+          ToWholeVertices(body, mesh_.mesh, old.medial_structure, node.faces);
+      node.faces = WithAttached(std::move(node.faces));
       MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, node);
       ids.push_back(node.id);
       result_.nodes.push_back(std::move(node));

@@ -215,7 +215,7 @@ void Sew(const std::vector<uint32_t>& sewn, Submesh& own, Body& body) {
   for (uint32_t v = 0; v < sewn.size(); ++v) {
     if (sewn[v] != v) {
       number[v] = number[sewn[v]];
-      body.seams.push_back({own.vertices[sewn[v]], own.vertices[v]});
+      body.seams.push_back({own.vertices[number[v]], own.vertices[v]});
       continue;
     }
     number[v] = count;
@@ -223,6 +223,7 @@ void Sew(const std::vector<uint32_t>& sewn, Submesh& own, Body& body) {
     own.vertices[count++] = own.vertices[v];
   }
   if (body.seams.empty()) return;
+  std::sort(body.seams.begin(), body.seams.end());
   mesh.positions.conservativeResize(count, 3);
   own.vertices.resize(count);
   for (Triangle& face : mesh.faces)
@@ -345,6 +346,32 @@ Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
   Bodies result = SortOut(mesh);
   CoarsenLarge(cancel, result, mesh.report);
   return result;
+}
+
+std::vector<uint32_t> ToWholeVertices(const Body& body,
+                                      const TriangleMesh& whole,
+                                      std::vector<uint32_t> own,
+                                      const std::vector<uint32_t>& faces) {
+  for (uint32_t& v : own) v = body.vertices[v];
+  if (body.seams.empty()) return own;
+  std::vector<uint32_t> corners;
+  for (uint32_t f : faces)
+    corners.insert(corners.end(), whole.faces[f].begin(), whole.faces[f].end());
+  std::sort(corners.begin(), corners.end());
+  const auto has = [&](uint32_t v) {
+    return std::binary_search(corners.begin(), corners.end(), v);
+  };
+  for (uint32_t& v : own) {
+    if (has(v)) continue;
+    auto seam =
+        std::lower_bound(body.seams.begin(), body.seams.end(), Bridge{v, 0});
+    for (; seam != body.seams.end() && (*seam)[0] == v; ++seam)
+      if (has((*seam)[1])) break;
+    if (seam != body.seams.end() && (*seam)[0] == v) v = (*seam)[1];
+  }
+  std::sort(own.begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
+  return own;
 }
 
 uint32_t PairsOfBody(const Body& body, uint32_t count) {

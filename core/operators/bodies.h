@@ -50,8 +50,8 @@ struct Body {
   std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
   std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
   std::vector<Bridge> bridges;     // between its shells, own vertices
-  // Vertices of the whole mesh that are one of this: which of them `vertices`
-  // has, and another.
+  // Vertices of the whole mesh that are one of this: the one that `vertices`
+  // has, and another; ascending.
   std::vector<Bridge> seams;
   double share = 1;  // of the area of all bodies
 
@@ -84,6 +84,14 @@ struct Bodies {
 // mesh. Thread safe.
 Bodies FindBodies(CanonicalMesh& mesh,
                   const CancelToken& cancel = CancelToken());
+
+// Vertices of a body in the whole mesh, ascending: of those that were sewn
+// together one that is a corner of `faces`, faces of the whole mesh, where
+// there is one. `own` ascending.
+std::vector<uint32_t> ToWholeVertices(const Body& body,
+                                      const TriangleMesh& whole,
+                                      std::vector<uint32_t> own,
+                                      const std::vector<uint32_t>& faces);
 
 // How many of the `count` pairs asked for a body has: its share of them, as
 // the shortest wave that they can tell is then the same on all bodies, but

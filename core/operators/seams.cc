@@ -1,8 +1,10 @@
 #include "core/operators/seams.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
+#include "absl/container/flat_hash_map.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/operators/body_tree.h"
@@ -10,25 +12,33 @@
 namespace marrow {
 namespace {
 
-// For each of the rim's vertices the place in `rim` of the nearest one of
-// another component; its own place where there is none.
-std::vector<uint32_t> NearestAcross(const TriangleMesh& mesh,
-                                    const std::vector<uint32_t>& rim,
-                                    double longest) {
+// Of each vertex the least of its component.
+std::vector<uint32_t> Components(const TriangleMesh& mesh) {
   DisjointSets sets(mesh.NumVertices());
   for (const Triangle& face : mesh.faces) {
     sets.Union(face[0], face[1]);
     sets.Union(face[0], face[2]);
   }
+  std::vector<uint32_t> component(mesh.NumVertices());
+  for (uint32_t v = 0; v < component.size(); ++v) component[v] = sets.Find(v);
+  return component;
+}
+
+// For each of the rim's vertices the place in `rim` of the nearest one of
+// another component; its own place where there is none.
+std::vector<uint32_t> NearestAcross(const TriangleMesh& mesh,
+                                    const std::vector<uint32_t>& rim,
+                                    const std::vector<uint32_t>& component,
+                                    double longest) {
   const UnitPoints box = ToUnitBox(mesh);
   Positions points(rim.size(), 3);
-  std::vector<uint32_t> component(rim.size());
+  std::vector<uint32_t> body(rim.size());
   for (size_t i = 0; i < rim.size(); ++i) {
     points.row(i) = box.points.row(rim[i]);
-    component[i] = sets.Find(rim[i]);
+    body[i] = component[rim[i]];
   }
   BodyTree tree(std::move(points));
-  tree.SetBodies(component);
+  tree.SetBodies(body);
   const double reach = longest / box.unit;
   std::vector<uint32_t> across(rim.size());
   for (uint32_t i = 0; i < rim.size(); ++i) {
@@ -41,6 +51,36 @@ std::vector<uint32_t> NearestAcross(const TriangleMesh& mesh,
   return across;
 }
 
+// Sets of vertices of which no two are of one component: else a face could be
+// lost, or a component grow together with itself.
+class Seams {
+ public:
+  explicit Seams(const std::vector<uint32_t>& component)
+      : component_(component), sets_(component.size()) {}
+
+  void Sew(uint32_t u, uint32_t v) {
+    std::vector<uint32_t> joined = ComponentsOf(u);
+    for (uint32_t c : ComponentsOf(v)) joined.push_back(c);
+    std::sort(joined.begin(), joined.end());
+    if (std::adjacent_find(joined.begin(), joined.end()) != joined.end())
+      return;
+    sets_.Union(u, v);
+    components_[sets_.Find(u)] = std::move(joined);
+  }
+  uint32_t Find(uint32_t v) { return sets_.Find(v); }
+
+ private:
+  std::vector<uint32_t> ComponentsOf(uint32_t v) {
+    const auto it = components_.find(sets_.Find(v));
+    return it == components_.end() ? std::vector<uint32_t>{component_[v]}
+                                   : it->second;
+  }
+
+  const std::vector<uint32_t>& component_;
+  DisjointSets sets_;
+  absl::flat_hash_map<uint32_t, std::vector<uint32_t>> components_;
+};
+
 }  // namespace
 
 std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest) {
@@ -49,21 +89,16 @@ std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest) {
   std::vector<uint32_t> sewn(mesh.NumVertices());
   std::iota(sewn.begin(), sewn.end(), 0u);
   if (rim.empty()) return sewn;
-  const std::vector<uint32_t> across = NearestAcross(mesh, rim, longest);
-  DisjointSets sets(mesh.NumVertices());
-  for (uint32_t i = 0; i < rim.size(); ++i)
-    if (across[across[i]] == i) sets.Union(rim[i], rim[across[i]]);
-  // Whether the two, made one, would be two corners of a face.
-  const auto share_face = [&](uint32_t u, uint32_t v) {
-    for (uint32_t f : adjacency.VertexFaces(u))
-      for (uint32_t w : mesh.faces[f])
-        if (w != u && sets.Find(w) == sets.Find(v)) return true;
-    return false;
-  };
-  for (uint32_t i = 0; i < rim.size(); ++i)
-    if (across[across[i]] != i && !share_face(rim[i], rim[across[i]]))
-      sets.Union(rim[i], rim[across[i]]);
-  for (uint32_t v : rim) sewn[v] = sets.Find(v);
+  const std::vector<uint32_t> component = Components(mesh);
+  const std::vector<uint32_t> across =
+      NearestAcross(mesh, rim, component, longest);
+  Seams seams(component);
+  for (bool mutual : {true, false})
+    for (uint32_t i = 0; i < rim.size(); ++i)
+      if (across[i] != i && (across[across[i]] == i) == mutual &&
+          seams.Find(rim[i]) != seams.Find(rim[across[i]]))
+        seams.Sew(rim[i], rim[across[i]]);
+  for (uint32_t v : rim) sewn[v] = seams.Find(v);
   return sewn;
 }
 

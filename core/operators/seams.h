@@ -13,7 +13,7 @@ namespace marrow {
 // are none. A rim is what edges of one face connect. A vertex of a rim goes
 // with the nearest one of the rims of other components, within `longest`, in
 // units of the positions: first those that are nearest to each other, then the
-// others, but for those that would take a face with them. So limbs that were
+// others; but never two of one component. So limbs that were
 // cut off along a joint grow on again, and the surface goes through the joint
 // as if it had never been cut. Components are connected through shared
 // vertices. Deterministic, O(n log^2 n), thread safe.

@@ -134,8 +134,8 @@ std::vector<uint32_t> SegmentedMesh::MedialStructure(
         MedialStructureOf(context, ComputedFaces(*body.coarse, own), options_);
     vertices = ToFine(vertices, *body.coarse, body.canonical->mesh, own);
   }
-  for (uint32_t& v : vertices) v = body.vertices[v];
-  return vertices;
+  return ToWholeVertices(body, prepared().canonical.mesh, std::move(vertices),
+                         faces);
 }
 
 uint32_t SegmentedMesh::EigenPairCount() const {

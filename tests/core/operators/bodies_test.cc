@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "core/mesh/adjacency.h"
 #include "gtest/gtest.h"
 #include "tests/testing/cpu_time.h"
 #include "tests/testing/shapes.h"
@@ -86,6 +87,43 @@ TEST(BodiesTest, TheSmallIsAttachedToTheNearestFace) {
     const double x = mesh.mesh.Position(mesh.mesh.faces[f][0]).x();
     if (anchor == f) continue;
     EXPECT_GT(x * mesh.mesh.Position(mesh.mesh.faces[anchor][0]).x(), 0.8);
+  }
+}
+
+// Two halves of a sphere, a hair apart at the equator.
+TEST(BodiesTest, SewnVerticesAreThoseOfTheFacesAskedFor) {
+  TriangleMesh north = Icosphere(3), south = north;
+  const auto keep = [](TriangleMesh& mesh, double side) {
+    std::erase_if(mesh.faces, [&](const Triangle& f) {
+      return side * (mesh.Position(f[0]).z() + mesh.Position(f[1]).z() +
+                     mesh.Position(f[2]).z()) <
+             0;
+    });
+    mesh.positions.col(2).array() += side * 0.01;
+  };
+  keep(north, 1);
+  keep(south, -1);
+  CanonicalMesh mesh = CanonicalOf(Together({north, south}));
+  ASSERT_EQ(mesh.report.components, 2u);
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 1u);
+  const Body& body = bodies.bodies[0];
+  ASSERT_FALSE(body.seams.empty());
+  EXPECT_TRUE(std::is_sorted(body.seams.begin(), body.seams.end()));
+  for (const auto& [kept, other] : body.seams) {
+    EXPECT_NEAR((mesh.mesh.Position(kept) - mesh.mesh.Position(other)).norm(),
+                0.02, 0.005);
+    EXPECT_TRUE(
+        std::binary_search(body.vertices.begin(), body.vertices.end(), kept));
+    // By the faces of either half.
+    const uint32_t own =
+        std::lower_bound(body.vertices.begin(), body.vertices.end(), kept) -
+        body.vertices.begin();
+    for (uint32_t v : {kept, other}) {
+      const uint32_t face = Adjacency(mesh.mesh).VertexFaces(v).front();
+      EXPECT_EQ(ToWholeVertices(body, mesh.mesh, {own}, {face}),
+                std::vector<uint32_t>{v});
+    }
   }
 }
 

@@ -65,6 +65,19 @@ TEST(SeamsTest, FacingRimsBecomeOne) {
   EXPECT_EQ(CountSewn(SewRims(mesh, 0.04)), 0u);
 }
 
+// A third tube in the middle of both rims is sewn to one of each at most.
+TEST(SeamsTest, NoTwoOfOneComponent) {
+  const TriangleMesh mesh = Both(Both(Tube(12, 4, 0, 0), Tube(24, 4, 0.95, 0)),
+                                 Tube(17, 2, 0.925, 0.3));
+  const std::vector<uint32_t> sewn = SewRims(mesh, 0.6);
+  const auto component = [](uint32_t v) {
+    return v < 48 ? 0 : v < 144 ? 1 : 2;
+  };
+  std::set<std::pair<uint32_t, int>> seen;
+  for (uint32_t v = 0; v < sewn.size(); ++v)
+    EXPECT_TRUE(seen.insert({sewn[v], component(v)}).second) << v;
+}
+
 TEST(SeamsTest, NoFaceIsLost) {
   // Two vertices of the upper rim for each of the lower.
   const TriangleMesh mesh = Both(Tube(12, 4, 0, 0), Tube(24, 4, 0.95, 0));
