@@ -30,6 +30,13 @@ class DisjointSets {
     return true;
   }
 
+  // Of each member the representative of its set.
+  std::vector<uint32_t> Representatives() {
+    std::vector<uint32_t> all(parent_.size());
+    for (uint32_t x = 0; x < all.size(); ++x) all[x] = Find(x);
+    return all;
+  }
+
  private:
   std::vector<uint32_t> parent_;
 };

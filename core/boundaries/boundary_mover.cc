@@ -85,7 +85,6 @@ absl::InlinedVector<uint32_t, 2> FewNeighbours(const Adjacency& adjacency,
       std::lower_bound(around.begin(), around.end(), f) - around.begin();
   const uint32_t next = around[(i + 1) % around.size()];
   const uint32_t last = around[(i + around.size() - 1) % around.size()];
-  if (next == last) return {next};
   return {next, last};
 }
 

@@ -1,9 +1,7 @@
 #include "core/mesh/cracks.h"
 
 #include <algorithm>
-#include <limits>
 #include <nanoflann.hpp>
-#include <numeric>
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
@@ -50,16 +48,14 @@ std::vector<double> SquaredReach(const TriangleMesh& mesh,
 
 std::vector<uint32_t> FindCracks(const TriangleMesh& mesh) {
   const std::vector<uint32_t> rim = RimVertices(Adjacency(mesh));
-  std::vector<uint32_t> closed(mesh.NumVertices());
-  std::iota(closed.begin(), closed.end(), 0u);
-  if (rim.empty()) return closed;
+  DisjointSets sets(mesh.NumVertices());
+  if (rim.empty()) return sets.Representatives();
   const Positions points = ToUnitBox(mesh).points;
   const std::vector<double> reach = SquaredReach(mesh, points);
   const Cloud cloud{points, rim};
   const nanoflann::KDTreeSingleIndexAdaptor<
       nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
       tree(3, cloud);
-  DisjointSets sets(mesh.NumVertices());
   std::vector<std::pair<uint32_t, double>> near;
   for (uint32_t v : rim) {
     const Eigen::Vector3d place = points.row(v).transpose();
@@ -68,8 +64,7 @@ std::vector<uint32_t> FindCracks(const TriangleMesh& mesh) {
     for (const auto& [i, square] : near)
       if (square < reach[rim[i]]) sets.Union(v, rim[i]);
   }
-  for (uint32_t v : rim) closed[v] = sets.Find(v);
-  return closed;
+  return sets.Representatives();
 }
 
 }  // namespace marrow

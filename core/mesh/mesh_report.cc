@@ -9,6 +9,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
+#include "core/mesh/components.h"
 #include "core/mesh/orientation.h"
 
 namespace marrow {
@@ -116,17 +117,6 @@ void CountEdges(const Adjacency& adjacency, MeshReport& report) {
   report.boundary_loops = std::unique(rims.begin(), rims.end()) - rims.begin();
 }
 
-void CountComponents(const TriangleMesh& mesh, MeshReport& report) {
-  DisjointSets components(mesh.NumVertices());
-  for (const Triangle& face : mesh.faces) {
-    components.Union(face[0], face[1]);
-    components.Union(face[0], face[2]);
-  }
-  for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
-    if (components.Find(v) == v) ++report.components;
-  }
-}
-
 uint32_t CornerOf(const TriangleMesh& mesh, uint32_t f, uint32_t v) {
   const Triangle& face = mesh.faces[f];
   return 3 * f + (face[0] == v ? 0 : face[1] == v ? 1 : 2);
@@ -165,7 +155,8 @@ MeshReport ReportOn(const TriangleMesh& mesh) {
   const Adjacency adjacency(mesh);
   MeasureArea(mesh, report);
   CountEdges(adjacency, report);
-  CountComponents(mesh, report);
+  DisjointSets vertices(mesh.NumVertices());
+  report.components = JoinCorners(mesh, vertices);
   CountSplitVertices(mesh, adjacency, report);
   report.euler_characteristic = static_cast<int64_t>(report.vertices) -
                                 adjacency.NumEdges() +

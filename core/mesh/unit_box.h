@@ -6,13 +6,14 @@
 
 namespace marrow {
 
-// Moved and scaled so that the box around them begins at the origin and its
-// longest side is 1. REQUIRES: not all are one.
 struct UnitPoints {
   Positions points;
   double unit = 1;  // of the positions in the mesh's
 };
 
+// Moved and scaled so that the box around them begins at the origin and its
+// longest side is 1. REQUIRES: two positions, and a finite
+// extent.
 inline UnitPoints ToUnitBox(const TriangleMesh& mesh) {
   UnitPoints result{mesh.positions};
   const Eigen::RowVector3d low = result.points.colwise().minCoeff();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
+#include "core/mesh/components.h"
 #include "core/mesh/submesh.h"
 #include "core/operators/laplacian.h"
 #include "core/operators/seams.h"
@@ -36,10 +37,7 @@ Groups GroupBy(uint32_t n, DisjointSets& sets) {
 // Faces by component.
 Groups Components(const TriangleMesh& mesh) {
   DisjointSets vertices(mesh.NumVertices());
-  for (const Triangle& face : mesh.faces) {
-    vertices.Union(face[0], face[1]);
-    vertices.Union(face[0], face[2]);
-  }
+  JoinCorners(mesh, vertices);
   std::vector<uint32_t> place(mesh.NumVertices(), kNoIndex);
   Groups components;
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh/unit_box.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/operators/bridges.h"
 
 namespace marrow {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
+#include "core/mesh/components.h"
+#include "core/mesh/unit_box.h"
 #include "core/operators/body_tree.h"
 
 namespace marrow {
@@ -44,26 +44,13 @@ std::vector<Candidate> NearestBodies(const BodyTree& tree,
   return best;
 }
 
-uint32_t JoinFaces(const TriangleMesh& mesh, DisjointSets& sets) {
-  uint32_t components = mesh.NumVertices();
-  for (const Triangle& face : mesh.faces)
-    components -= sets.Union(face[0], face[1]) + sets.Union(face[0], face[2]);
-  return components;
-}
-
-std::vector<uint32_t> Representatives(uint32_t n, DisjointSets& sets) {
-  std::vector<uint32_t> body(n);
-  for (uint32_t v = 0; v < n; ++v) body[v] = sets.Find(v);
-  return body;
-}
-
 // Every round joins each body to its nearest, so there are O(log n).
-std::vector<Bridge> Span(BodyTree& tree, DisjointSets sets, uint32_t n,
-                         uint32_t bodies, double longest_square) {
+std::vector<Bridge> Span(BodyTree& tree, DisjointSets sets, uint32_t bodies,
+                         double longest_square) {
   std::vector<Bridge> bridges;
   for (bool joined = true; joined && bodies > 1;) {
     joined = false;
-    const std::vector<uint32_t> body = Representatives(n, sets);
+    const std::vector<uint32_t> body = sets.Representatives();
     tree.SetBodies(body);
     std::vector<Candidate> best = NearestBodies(tree, body, longest_square);
     std::sort(best.begin(), best.end());
@@ -89,25 +76,25 @@ double BridgingDistance(const TriangleMesh& mesh) {
 std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest) {
   const uint32_t n = mesh.NumVertices();
   DisjointSets sets(n);
-  const uint32_t components = JoinFaces(mesh, sets);
+  const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
   UnitPoints box = ToUnitBox(mesh);
   longest /= box.unit;
   BodyTree tree(std::move(box.points));
-  return Span(tree, sets, n, components, longest * longest);
+  return Span(tree, sets, components, longest * longest);
 }
 
 std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
   const uint32_t n = mesh.NumVertices();
   DisjointSets sets(n);
-  const uint32_t components = JoinFaces(mesh, sets);
+  const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
   UnitPoints box = ToUnitBox(mesh);
   const double near = UnitBridgingDistance(mesh, box.points);
   BodyTree tree(std::move(box.points));
   std::vector<Bridge> bridges =
-      Span(tree, sets, n, components, std::numeric_limits<double>::infinity());
-  const std::vector<uint32_t> component = Representatives(n, sets);
+      Span(tree, sets, components, std::numeric_limits<double>::infinity());
+  const std::vector<uint32_t> component = sets.Representatives();
   tree.SetBodies(component);
   for (uint32_t v = 0; v < n; ++v) {
     Candidate nearest{near * near};

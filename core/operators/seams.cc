@@ -1,28 +1,17 @@
 #include "core/operators/seams.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
+#include "core/mesh/components.h"
+#include "core/mesh/unit_box.h"
 #include "core/operators/body_tree.h"
 
 namespace marrow {
 namespace {
-
-// Of each vertex the least of its component.
-std::vector<uint32_t> Components(const TriangleMesh& mesh) {
-  DisjointSets sets(mesh.NumVertices());
-  for (const Triangle& face : mesh.faces) {
-    sets.Union(face[0], face[1]);
-    sets.Union(face[0], face[2]);
-  }
-  std::vector<uint32_t> component(mesh.NumVertices());
-  for (uint32_t v = 0; v < component.size(); ++v) component[v] = sets.Find(v);
-  return component;
-}
 
 // For each of the rim's vertices the place in `rim` of the nearest one of
 // another component; its own place where there is none.
@@ -58,6 +47,7 @@ class Seams {
   explicit Seams(const std::vector<uint32_t>& component)
       : component_(component), sets_(component.size()) {}
 
+  // Unless one component would be there twice, as when they are one already.
   void Sew(uint32_t u, uint32_t v) {
     std::vector<uint32_t> joined = ComponentsOf(u);
     for (uint32_t c : ComponentsOf(v)) joined.push_back(c);
@@ -67,7 +57,7 @@ class Seams {
     sets_.Union(u, v);
     components_[sets_.Find(u)] = std::move(joined);
   }
-  uint32_t Find(uint32_t v) { return sets_.Find(v); }
+  std::vector<uint32_t> Representatives() { return sets_.Representatives(); }
 
  private:
   std::vector<uint32_t> ComponentsOf(uint32_t v) {
@@ -84,22 +74,19 @@ class Seams {
 }  // namespace
 
 std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest) {
-  const Adjacency adjacency(mesh);
-  const std::vector<uint32_t> rim = RimVertices(adjacency);
-  std::vector<uint32_t> sewn(mesh.NumVertices());
-  std::iota(sewn.begin(), sewn.end(), 0u);
-  if (rim.empty()) return sewn;
-  const std::vector<uint32_t> component = Components(mesh);
+  const std::vector<uint32_t> rim = RimVertices(Adjacency(mesh));
+  DisjointSets components(mesh.NumVertices());
+  JoinCorners(mesh, components);
+  const std::vector<uint32_t> component = components.Representatives();
+  Seams seams(component);
+  if (rim.empty()) return seams.Representatives();
   const std::vector<uint32_t> across =
       NearestAcross(mesh, rim, component, longest);
-  Seams seams(component);
   for (bool mutual : {true, false})
     for (uint32_t i = 0; i < rim.size(); ++i)
-      if (across[i] != i && (across[across[i]] == i) == mutual &&
-          seams.Find(rim[i]) != seams.Find(rim[across[i]]))
+      if (across[i] != i && (across[across[i]] == i) == mutual)
         seams.Sew(rim[i], rim[across[i]]);
-  for (uint32_t v : rim) sewn[v] = seams.Find(v);
-  return sewn;
+  return seams.Representatives();
 }
 
 }  // namespace marrow

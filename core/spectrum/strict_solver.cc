@@ -172,11 +172,14 @@ class StrictSolver {
   absl::StatusOr<std::vector<SpectrumPart>> FindAll(
       SpectrumSlicer& slicer, const ProgressCallback& progress) {
     std::vector<SpectrumPart> parts;
+    double done = 0;  // each call begins its shares anew
+    const auto report = [&](double share) {
+      done = std::max(done, kSolverShare * share);
+      progress(done);
+    };
     for (int found = 0; found < total_;) {
-      MARROW_ASSIGN_OR_RETURN(
-          std::vector<SpectrumPart> more,
-          slicer.Find({.pairs = total_}, cancel_,
-                      [&](double share) { progress(kSolverShare * share); }));
+      MARROW_ASSIGN_OR_RETURN(std::vector<SpectrumPart> more,
+                              slicer.Find({.pairs = total_}, cancel_, report));
       if (more.empty()) return absl::InternalError("the bands ended early");
       for (SpectrumPart& part : more) {
         found += part.end - part.first;

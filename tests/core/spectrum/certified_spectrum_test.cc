@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "core/base/error_reason.h"
@@ -117,6 +119,34 @@ TEST(CertifiedSpectrumTest, StrictPairsAreStrictOnAllKindsOfShapes) {
       ASSERT_EQ(spectrum.NumPairs(), 101u);
       ExpectStrict(mesh, spectrum);
     }
+  }
+}
+
+// Length 1000, radius 1: as a string, its pairs are those of half waves.
+TEST(CertifiedSpectrumTest, StrictPairsOfALongTubeAreAllThere) {
+  constexpr uint32_t kAround = 8, kRings = 201, kPairs = 200;
+  TriangleMesh mesh;
+  mesh.positions.resize(kAround * kRings, 3);
+  for (uint32_t v = 0; v < kAround * kRings; ++v) {
+    const double angle = 2 * std::numbers::pi * (v % kAround) / kAround;
+    mesh.positions.row(v) << std::cos(angle), std::sin(angle),
+        5.0 * (v / kAround);
+  }
+  for (uint32_t v = 0; v + kAround < kAround * kRings; ++v) {
+    const uint32_t next = v / kAround * kAround + (v + 1) % kAround;
+    mesh.faces.push_back({v, next, next + kAround});
+    mesh.faces.push_back({v, next + kAround, v + kAround});
+  }
+  const CertifiedSpectrum spectrum = Strict(mesh, kPairs);
+  ASSERT_EQ(spectrum.NumPairs(), kPairs + 1);
+  ExpectStrict(mesh, spectrum);
+  EXPECT_TRUE(
+      std::is_sorted(spectrum.eigenvalues.begin(), spectrum.eigenvalues.end()));
+  for (uint32_t k = 1; k < 20; ++k) {
+    const double wave = k * std::numbers::pi / 1000;
+    EXPECT_NEAR(spectrum.eigenvalues[k] / (spectrum.area * wave * wave), 1,
+                0.02)
+        << k;
   }
 }
 

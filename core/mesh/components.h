@@ -1,0 +1,24 @@
+// Components: what shared vertices connect.
+#ifndef MARROW_CORE_MESH_COMPONENTS_H_
+#define MARROW_CORE_MESH_COMPONENTS_H_
+
+#include <cstdint>
+
+#include "core/base/disjoint_sets.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace marrow {
+
+// Unites the corners of every face in `vertices`, which has each vertex of the
+// mesh as a set of its own; how many sets are left.
+inline uint32_t JoinCorners(const TriangleMesh& mesh, DisjointSets& vertices) {
+  uint32_t components = mesh.NumVertices();
+  for (const Triangle& face : mesh.faces)
+    components -=
+        vertices.Union(face[0], face[1]) + vertices.Union(face[0], face[2]);
+  return components;
+}
+
+}  // namespace marrow
+
+#endif  // MARROW_CORE_MESH_COMPONENTS_H_
