@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -106,14 +107,16 @@ std::unique_ptr<draco::Mesh> ToDraco(const PointMesh& points, bool narrow,
   return mesh;
 }
 
+// Draco quantizes floats alone.
+bool IsNarrow(const PointMesh& points, const EncodeOptions& options) {
+  return options.quantization_bits > 0 || AreFloats(points.sites.rows);
+}
+
 absl::StatusOr<std::string> RunEncoder(const PointMesh& points,
                                        const EncodeOptions& options,
                                        EncodeMethod method, bool number_sites) {
-  // Draco quantizes floats alone.
-  const bool narrow =
-      options.quantization_bits > 0 || AreFloats(points.sites.rows);
   const std::unique_ptr<draco::Mesh> mesh =
-      ToDraco(points, narrow, number_sites);
+      ToDraco(points, IsNarrow(points, options), number_sites);
   draco::ExpertEncoder encoder(*mesh);
   encoder.SetSpeedOptions(options.speed, options.speed);
   encoder.SetEncodingMethod(method == EncodeMethod::kEdgebreaker
@@ -196,6 +199,35 @@ bool TransferSites(const Decoded& numbered, Decoded* plain) {
          plain->point_site.end();
 }
 
+// As Decoded has them, where nothing was quantized.
+std::array<uint64_t, 3> PositionBits(const std::array<double, 3>& position,
+                                     bool narrow) {
+  std::array<uint64_t, 3> bits{};
+  if (narrow) {
+    const std::array<float, 3> floats{
+        ToFloat(position[0]), ToFloat(position[1]), ToFloat(position[2])};
+    std::memcpy(bits.data(), floats.data(), sizeof floats);
+  } else {
+    std::memcpy(bits.data(), position.data(), sizeof position);
+  }
+  return bits;
+}
+
+// Whether a payload decodes to the points and faces in their own order. Faces
+// alone do not tell: those of a soup are 0 1 2, 3 4 5, ... in any order.
+bool KeptTheirOrder(const PointMesh& points, const EncodeOptions& options,
+                    const Decoded& decoded) {
+  if (options.quantization_bits > 0 || decoded.faces != points.faces ||
+      decoded.positions.size() != points.point_site.size())
+    return false;
+  const bool narrow = IsNarrow(points, options);
+  for (size_t p = 0; p < decoded.positions.size(); ++p)
+    if (decoded.positions[p] !=
+        PositionBits(points.sites.rows[points.point_site[p]], narrow))
+      return false;
+  return true;
+}
+
 // A payload and the site of each point as it decodes.
 struct OrderedPayload {
   std::string bytes;
@@ -209,8 +241,7 @@ absl::StatusOr<OrderedPayload> EncodeInOrder(const PointMesh& points,
   MARROW_ASSIGN_OR_RETURN(payload.bytes,
                           RunEncoder(points, options, method, false));
   MARROW_ASSIGN_OR_RETURN(payload.decoded, RunDecoder(payload.bytes));
-  if (payload.decoded.faces == points.faces &&
-      payload.decoded.positions.size() == points.point_site.size()) {
+  if (KeptTheirOrder(points, options, payload.decoded)) {
     payload.decoded.point_site = points.point_site;
     return payload;
   }

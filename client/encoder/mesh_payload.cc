@@ -1,11 +1,15 @@
 #include "client/encoder/mesh_payload.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "client/mesh_file/mesh_file.h"
+#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 
 namespace marrow {
@@ -45,6 +49,23 @@ PayloadOrigin IdentityOrigin(const DecodedMesh& decoded) {
   return origin;
 }
 
+// The service would name the point of the payload, which is none of the file's.
+absl::Status CheckFinite(const PolygonMesh& mesh) {
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    for (uint32_t v : mesh.Face(f)) {
+      const std::array<double, 3>& position = mesh.positions[v];
+      if (!std::all_of(position.begin(), position.end(),
+                       [](double x) { return std::isfinite(x); }))
+        return WithReason(absl::InvalidArgumentError(absl::StrCat(
+                              "vertex ", v,
+                              ", counted from 0, is not finite; repair the "
+                              "mesh")),
+                          kReasonMeshRejected);
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<MeshPayload> PayloadFromDraco(std::string bytes,
@@ -69,6 +90,8 @@ absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
   }
   MeshPayload payload;
   MARROW_ASSIGN_OR_RETURN(payload.mesh, ParseMesh(path, bytes));
+  if (absl::Status s = CheckFinite(payload.mesh); !s.ok())
+    return WithPath(path, s);
   absl::StatusOr<EncodedMesh> encoded = EncodeMesh(payload.mesh, options);
   if (!encoded.ok()) return WithPath(path, encoded.status());
   // Draco cannot hold fewer than three points; all faces are degenerate then.

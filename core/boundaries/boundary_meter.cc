@@ -6,6 +6,7 @@
 
 #include "core/boundaries/calibration.h"
 #include "core/boundaries/loops.h"
+#include "core/mesh/rims.h"
 
 namespace marrow {
 namespace {
@@ -44,6 +45,7 @@ BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
       curvature_(curvature),
       share_(share),
       unit_(UnitAreaPositions(mesh)),
+      rim_of_vertex_(RimOfVertices(adjacency)),
       flood_(mesh, adjacency, unit_) {}
 
 double BoundaryMeter::StrengthBetween(const PieceGraph& graph,
@@ -84,7 +86,8 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   measures[kSaddleMiddle] = SaddleAlong(cut, kMiddleWidth * cut.radius);
   measures[kSaddleWide] = SaddleAlong(cut, kWideWidth * cut.radius);
   MeasureStrips(cut, measures);
-  measures[kLargestLoop] = LargestLoopShare(adjacency_, unit_, cut.edges);
+  measures[kLargestLoop] =
+      LargestLoopShare(adjacency_, unit_, rim_of_vertex_, cut.edges);
   return measures;
 }
 

@@ -91,6 +91,7 @@ class BoundaryMeter {
   const Curvature& curvature_;
   double share_;
   Positions unit_;
+  std::vector<uint32_t> rim_of_vertex_;
   Flood flood_;
 };
 

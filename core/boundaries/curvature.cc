@@ -8,12 +8,17 @@
 
 #include "core/base/status_macros.h"
 #include "core/boundaries/multigrid.h"
+#include "core/mesh/angle.h"
+#include "core/mesh/rims.h"
 #include "core/operators/laplacian.h"
 
 namespace marrow {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // of a step's residual
+
+// Around a hole, at most; of a mesh of area 1. It is that of a finger.
+constexpr double kSmallHole = 0.2;
 
 // From one width to the next, the total of |K| falls by a factor of at most 2
 // on smooth bodies with limbs, and of 2.5 to 6 where noise is what is seen.
@@ -28,37 +33,39 @@ Positions UnitExtentPositions(const TriangleMesh& mesh) {
   return (mesh.positions.rowwise() - low) / extent;
 }
 
-// The angle between two vectors, stable near 0 and pi.
-double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+double AreaOf(const TriangleMesh& mesh, const Positions& positions) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Eigen::Vector3d u = (positions.row(b) - positions.row(a)).transpose();
+    const Eigen::Vector3d v = (positions.row(c) - positions.row(a)).transpose();
+    area += 0.5 * u.cross(v).norm();
+  }
+  return area;
 }
 
 }  // namespace
 
 Positions UnitAreaPositions(const TriangleMesh& mesh) {
-  Positions unit = UnitExtentPositions(mesh);
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3d u = (unit.row(b) - unit.row(a)).transpose();
-    const Eigen::Vector3d v = (unit.row(c) - unit.row(a)).transpose();
-    area += 0.5 * u.cross(v).norm();
-  }
-  return unit / std::sqrt(area);
+  const Positions unit = UnitExtentPositions(mesh);
+  return unit / std::sqrt(AreaOf(mesh, unit));
 }
 
 std::vector<double> AngleDefects(const TriangleMesh& mesh,
                                  const Adjacency& adjacency) {
   const Positions unit = UnitExtentPositions(mesh);
   std::vector<double> defects(mesh.NumVertices(), 2 * std::numbers::pi);
-  for (const Triangle& face : mesh.faces) {
-    for (int i = 0; i < 3; ++i) {
-      const auto at = unit.row(face[i]);
-      defects[face[i]] -= Angle((unit.row(face[(i + 1) % 3]) - at).transpose(),
-                                (unit.row(face[(i + 2) % 3]) - at).transpose());
-    }
-  }
+  const auto subtract = [&](uint32_t at, uint32_t before, uint32_t after) {
+    defects[at] -= Angle((unit.row(before) - unit.row(at)).transpose(),
+                         (unit.row(after) - unit.row(at)).transpose());
+  };
+  for (const Triangle& face : mesh.faces)
+    for (int i = 0; i < 3; ++i)
+      subtract(face[i], face[(i + 1) % 3], face[(i + 2) % 3]);
+  const Holes holes =
+      SmallHoles(adjacency, unit, kSmallHole * std::sqrt(AreaOf(mesh, unit)));
+  for (const auto& [vertex, angle] : holes.corners) defects[vertex] -= angle;
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
-    if (adjacency.EdgeFaces(e).size() != 2)
+    if (adjacency.EdgeFaces(e).size() != 2 && !holes.has_edge[e])
       for (uint32_t v : adjacency.EdgeVertices(e)) defects[v] = 0;
   return defects;
 }

@@ -24,10 +24,10 @@ Positions UnitAreaPositions(const TriangleMesh& mesh);
 // to the next, w', which is twice as wide, from 0 and kLeastWidth on. A step
 // keeps the total and makes neither a new maximum nor a new minimum on meshes
 // without obtuse angles. It uses edge lengths alone, so bending changes
-// nothing. Vertices at a boundary of the mesh or at an edge of three or more
-// faces have no defect. Widths at which there is hardly anything but noise (the
-// total of |K| falls too fast towards the next) have the values of the first
-// that is wider.
+// nothing. Vertices at a boundary of the mesh, other than that of a small hole,
+// or at an edge of three or more faces have no defect. Widths at which there is
+// hardly anything but noise (the total of |K| falls too fast towards the next)
+// have the values of the first that is wider.
 //
 // Immutable, hence thread safe.
 class Curvature {
@@ -54,7 +54,8 @@ class Curvature {
 };
 
 // 2 pi less the sum of the angles at each vertex; 0 where it is not inside a
-// manifold part of the surface.
+// manifold part of the surface. Small holes (core/mesh/rims.h), as scans have
+// them, are taken to be filled with flat faces.
 std::vector<double> AngleDefects(const TriangleMesh& mesh,
                                  const Adjacency& adjacency);
 

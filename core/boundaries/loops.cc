@@ -8,15 +8,17 @@
 namespace marrow {
 
 double LargestLoopShare(const Adjacency& adjacency, const Positions& positions,
+                        const std::vector<uint32_t>& rim_of_vertex,
                         std::span<const uint32_t> edges) {
   std::vector<uint32_t> vertices;
   for (uint32_t e : edges)
-    for (uint32_t v : adjacency.EdgeVertices(e)) vertices.push_back(v);
+    for (uint32_t v : adjacency.EdgeVertices(e))
+      vertices.push_back(rim_of_vertex[v]);
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   auto place = [&](uint32_t v) {
     return static_cast<uint32_t>(
-        std::lower_bound(vertices.begin(), vertices.end(), v) -
+        std::lower_bound(vertices.begin(), vertices.end(), rim_of_vertex[v]) -
         vertices.begin());
   };
   DisjointSets connected(static_cast<uint32_t>(vertices.size()));

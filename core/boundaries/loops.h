@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
@@ -11,8 +12,11 @@
 namespace marrow {
 
 // The share of the edges' length that their longest connected part has; 0 where
-// they have none.
+// they have none. Edges that end on one rim are connected, for a cut that runs
+// into a hole goes on where it leaves it. `rim_of_vertex` as RimOfVertices()
+// gives it.
 double LargestLoopShare(const Adjacency& adjacency, const Positions& positions,
+                        const std::vector<uint32_t>& rim_of_vertex,
                         std::span<const uint32_t> edges);
 
 }  // namespace marrow

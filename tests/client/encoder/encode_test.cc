@@ -146,7 +146,8 @@ enum class Shape {
   kNonManifold,
   kDuplicates,
   kDegenerate,
-  kIsolated
+  kIsolated,
+  kApart
 };
 enum class Seams { kNone, kUv, kNormal, kBoth };
 
@@ -170,6 +171,9 @@ PolygonMesh MakeMesh(Shape shape, Seams seams) {
       break;
     case Shape::kIsolated:
       mesh = Isolated();
+      break;
+    case Shape::kApart:
+      mesh = Apart();
       break;
   }
   if (seams == Seams::kUv || seams == Seams::kBoth) AddUvSeam(&mesh);
@@ -209,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(Shape::kTriangles, Shape::kPolygons,
                                          Shape::kNonManifold,
                                          Shape::kDuplicates, Shape::kDegenerate,
-                                         Shape::kIsolated),
+                                         Shape::kIsolated, Shape::kApart),
                        ::testing::Values(Seams::kNone, Seams::kUv,
                                          Seams::kNormal, Seams::kBoth)));
 

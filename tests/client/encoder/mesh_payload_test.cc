@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -53,6 +54,17 @@ TEST(LoadMeshPayloadTest, EncodesOtherFiles) {
   ASSERT_TRUE(payload.ok()) << payload.status();
   EXPECT_EQ(payload->mesh.NumFaces(), Polygons().NumFaces());
   EXPECT_EQ(payload->encoded.bytes, EncodeMesh(Polygons(), {})->bytes);
+}
+
+TEST(LoadMeshPayloadTest, NamesTheFilesVertexThatIsNotFinite) {
+  PolygonMesh mesh = Torus(false);
+  mesh.positions[17][1] = std::numeric_limits<double>::quiet_NaN();
+  const std::string path = WriteTemp("nan.obj", "");
+  ASSERT_TRUE(WriteMesh(mesh, path).ok());
+  const auto payload = LoadMeshPayload(path, {}, MeshLimits());
+  EXPECT_EQ(ReasonOf(payload.status()), kReasonMeshRejected);
+  EXPECT_THAT(payload.status().message(),
+              HasSubstr("vertex 17, counted from 0, is not finite"));
 }
 
 TEST(LoadMeshPayloadTest, RefusesAMeshThatIsOnePoint) {

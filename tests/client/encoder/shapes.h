@@ -119,6 +119,25 @@ inline PolygonMesh Duplicates() {
   return mesh;
 }
 
+// The faces of a torus, each of a size and on its own: none shares a vertex or
+// a position with another.
+inline PolygonMesh Apart() {
+  const PolygonMesh torus = Torus(false);
+  PolygonMesh mesh;
+  for (uint32_t f = 0; f < torus.NumFaces(); ++f) {
+    const uint32_t first = static_cast<uint32_t>(mesh.NumVertices());
+    for (const uint32_t v : torus.Face(f)) {
+      auto [x, y, z] = torus.positions[v];
+      const double s = 1 - 0.001 * (f + 1);
+      mesh.positions.push_back({static_cast<float>(s * x),
+                                static_cast<float>(s * y),
+                                static_cast<float>(s * z)});
+    }
+    mesh.AddFace(Corners3{first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
 // Faces with repeated corners, with fewer than three, with three corners at two
 // positions, and of no area, strewn among the others.
 inline PolygonMesh Degenerate() {

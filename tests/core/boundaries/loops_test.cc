@@ -1,7 +1,9 @@
 #include "core/boundaries/loops.h"
 
+#include <numeric>
 #include <vector>
 
+#include "core/mesh/rims.h"
 #include "gtest/gtest.h"
 #include "tests/testing/shapes.h"
 
@@ -23,10 +25,16 @@ TEST(LargestLoopShareTest, IsThatOfTheLongestConnectedPart) {
   }
   ASSERT_EQ(whole.size(), 2u);
   ASSERT_EQ(broken.size(), 3u);
-  EXPECT_DOUBLE_EQ(LargestLoopShare(adjacency, mesh.positions, whole), 1);
-  EXPECT_DOUBLE_EQ(LargestLoopShare(adjacency, mesh.positions, broken),
-                   2.0 / 3);
-  EXPECT_EQ(LargestLoopShare(adjacency, mesh.positions, {}), 0);
+  std::vector<uint32_t> no_rims(mesh.NumVertices());
+  std::iota(no_rims.begin(), no_rims.end(), 0u);
+  const auto share = [&](const std::vector<uint32_t>& rims,
+                         const std::vector<uint32_t>& edges) {
+    return LargestLoopShare(adjacency, mesh.positions, rims, edges);
+  };
+  EXPECT_DOUBLE_EQ(share(no_rims, whole), 1);
+  EXPECT_DOUBLE_EQ(share(no_rims, broken), 2.0 / 3);
+  EXPECT_EQ(share(no_rims, {}), 0);
+  EXPECT_DOUBLE_EQ(share(RimOfVertices(adjacency), broken), 1);
 }
 
 }  // namespace

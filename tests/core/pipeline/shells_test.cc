@@ -312,25 +312,49 @@ TEST(BodiesTest, FlippedFacesChangeNothing) {
               0.001);
 }
 
-// Without every 60th vertex and the faces around it.
-TEST(BodiesTest, HolesAreNoJoints) {
-  const TriangleMesh mesh = MakeCreature("quadruped").mesh;
+// How far the first level of the mesh without some faces is from that with
+// them.
+double DifferenceWithout(const TriangleMesh& mesh,
+                         const std::vector<bool>& missing, Method method) {
   TriangleMesh holed = mesh;
   holed.faces.clear();
-  std::vector<uint32_t> kept;
-  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    const Triangle& t = mesh.faces[f];
-    if (std::any_of(t.begin(), t.end(), [](uint32_t v) { return v % 60 == 0; }))
-      continue;
-    kept.push_back(f);
-    holed.faces.push_back(t);
-  }
-  const RecordingSink expected = RunOn(mesh, Levels(1));
-  const RecordingSink run = RunOn(holed, Levels(1));
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    if (!missing[f]) holed.faces.push_back(mesh.faces[f]);
+  const RecordingSink expected = RunOn(mesh, Levels(1, method));
+  const RecordingSink run = RunOn(holed, Levels(1, method));
   EXPECT_GE(run.mesh.report.boundary_loops, 30u);
   std::vector<uint32_t> labels;
-  for (uint32_t f : kept) labels.push_back(expected.levels[0].face_labels[f]);
-  EXPECT_LE(RandIndexDifference(run.levels[0].face_labels, labels), 0.03);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    if (!missing[f]) labels.push_back(expected.levels[0].face_labels[f]);
+  return RandIndexDifference(run.levels[0].face_labels, labels);
+}
+
+// Without every 60th vertex and the faces around it.
+TEST_P(ShellsTest, HolesAreNoJoints) {
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
+  std::vector<bool> missing;
+  for (const Triangle& t : mesh.faces)
+    missing.push_back(std::any_of(t.begin(), t.end(),
+                                  [](uint32_t v) { return v % 60 == 0; }));
+  EXPECT_LE(DifferenceWithout(mesh, missing, Method::kPaper), 0.03);
+  EXPECT_LE(DifferenceWithout(mesh, missing, Method::kMerge), 0.04);
+}
+
+// Without one face in a hundred.
+TEST_P(ShellsTest, MissingFacesAreNoJoints) {
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
+  constexpr int kTimes = 4;
+  double paper = 0, merge = 0;
+  for (int time = 0; time < kTimes; ++time) {
+    std::mt19937 random(time);
+    std::vector<bool> missing;
+    for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+      missing.push_back(random() % 100 == 0);
+    paper += DifferenceWithout(mesh, missing, Method::kPaper) / kTimes;
+    merge += DifferenceWithout(mesh, missing, Method::kMerge) / kTimes;
+  }
+  EXPECT_LE(paper, 0.01);
+  EXPECT_LE(merge, 0.04);
 }
 
 }  // namespace
