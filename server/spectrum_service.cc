@@ -11,6 +11,7 @@
 #include "core/base/status_macros.h"
 #include "core/operators/bodies.h"
 #include "core/spectrum/certified_spectrum.h"
+#include "core/spectrum/component_spectrum.h"
 #include "server/event_builder.h"
 #include "server/event_stream.h"
 #include "server/request_parser.h"
@@ -58,8 +59,8 @@ absl::StatusOr<CertifiedSpectrum> SolveStrict(
   use = {.outcome = CacheOutcome::kMiss, .solver_runs = 1};
   MARROW_ASSIGN_OR_RETURN(
       CertifiedSpectrum spectrum,
-      context.engine.solve_strictly(mesh, work.eigen_pairs, cancel,
-                                    report(kMeshShare, 1)));
+      SolveByComponents(mesh, work.eigen_pairs, context.engine.solve_strictly,
+                        cancel, report(kMeshShare, 1)));
   if (const double worst = spectrum.residuals.maxCoeff();
       !(worst <= kStrictResidual)) {
     return WithReason(
@@ -71,13 +72,40 @@ absl::StatusOr<CertifiedSpectrum> SolveStrict(
   return spectrum;
 }
 
-absl::StatusOr<CertifiedSpectrum> CertifyUsual(const Work& work,
-                                               const CanonicalMesh& mesh,
-                                               const EigenPairs& pairs,
-                                               const CancelToken& cancel,
-                                               const ReportSteps& report) {
-  return CertifySpectrum(mesh, pairs, work.eigen_pairs, kUsualResidual, cancel,
-                         report(kSolverShare, 1));
+// How the pairs of several meshes were had, together.
+void Add(const SpectrumUse& more, SpectrumUse& use) {
+  if (more.outcome != CacheOutcome::kHit) use.outcome = more.outcome;
+  use.solver_runs += more.solver_runs;
+}
+
+// In double. Where windows of the usual pairs part a cluster, all is solved
+// anew strictly.
+absl::StatusOr<CertifiedSpectrum> SolveUsual(
+    ServiceContext& context, const Work& work, const CanonicalMesh& mesh,
+    const CancelToken& cancel, const ReportSteps& report, SpectrumUse& use) {
+  use = {.outcome = CacheOutcome::kHit};
+  const SpectrumSolver solve = [&](const CanonicalMesh& component,
+                                   uint32_t count, const CancelToken&,
+                                   const ProgressCallback& progress)
+      -> absl::StatusOr<CertifiedSpectrum> {
+    SpectrumUse own;
+    MARROW_ASSIGN_OR_RETURN(
+        const auto pairs,
+        context.spectra.Get(
+            component, count, cancel,
+            [&](double x) { progress(kSolverShare * x); }, own));
+    Add(own, use);
+    auto spectrum = CertifySpectrum(
+        component, *pairs, count, kUsualResidual, cancel,
+        [&](double x) { progress(kSolverShare + (1 - kSolverShare) * x); });
+    if (spectrum.ok() ||
+        ReasonOf(spectrum.status()) != kReasonSolverNotConverged)
+      return spectrum;
+    Add({.outcome = CacheOutcome::kMiss, .solver_runs = 1}, use);
+    return context.engine.solve_strictly(component, count, cancel, nullptr);
+  };
+  return SolveByComponents(mesh, work.eigen_pairs, solve, cancel,
+                           report(kMeshShare, 1));
 }
 
 // Everything but the last event.
@@ -91,22 +119,25 @@ absl::StatusOr<std::shared_ptr<const SpectrumEvents>> Solve(
       job.Progress(v1::STAGE_SPECTRUM, from + (to - from) * fraction);
     };
   };
-  CertifiedSpectrum spectrum;
-  if (work.strict) {
-    MARROW_ASSIGN_OR_RETURN(
-        spectrum, SolveStrict(context, work, *mesh, cancel, report, use));
-  } else {
-    MARROW_ASSIGN_OR_RETURN(
-        const auto pairs,
-        context.spectra.Get(
-            *mesh, work.eigen_pairs, cancel,
-            report(kMeshShare, work.eigenvectors ? kSolverShare : 1), use));
-    if (!work.eigenvectors)
-      return std::make_shared<const SpectrumEvents>(mesh, pairs);
-    MARROW_ASSIGN_OR_RETURN(spectrum,
-                            CertifyUsual(work, *mesh, *pairs, cancel, report));
+  const bool values_alone = !work.strict && !work.eigenvectors;
+  if (values_alone && mesh->report.components <= 1) {
+    MARROW_ASSIGN_OR_RETURN(const auto pairs,
+                            context.spectra.Get(*mesh, work.eigen_pairs, cancel,
+                                                report(kMeshShare, 1), use));
+    return std::make_shared<const SpectrumEvents>(mesh, pairs);
   }
+  MARROW_ASSIGN_OR_RETURN(
+      CertifiedSpectrum spectrum,
+      work.strict ? SolveStrict(context, work, *mesh, cancel, report, use)
+                  : SolveUsual(context, work, *mesh, cancel, report, use));
   use.eigen_pairs = spectrum.NumPairs() - 1;
+  if (values_alone) {
+    auto pairs = std::make_shared<EigenPairs>();
+    pairs->eigenvalues = spectrum.eigenvalues;
+    pairs->area = spectrum.area;
+    return std::make_shared<const SpectrumEvents>(
+        mesh, std::shared_ptr<const EigenPairs>(std::move(pairs)));
+  }
   return std::make_shared<const SpectrumEvents>(
       mesh, std::make_shared<const CertifiedSpectrum>(std::move(spectrum)),
       work.eigenvectors);

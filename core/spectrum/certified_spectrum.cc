@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
 #include "core/spectrum/certificate.h"
@@ -36,6 +37,10 @@ constexpr int kMostIterations = 6;
 // An iteration that does not bring the residual below this share was the last.
 constexpr double kWorthwhile = 0.8;
 constexpr double kAnalysisShare = 0.1;
+// How far the products of vectors may be from 0 and 1: this, or this share of
+// the residual asked for.
+constexpr double kOrthonormal = 1e-8;
+constexpr double kOrthonormalShare = 0.01;
 
 class Certifier {
  public:
@@ -62,6 +67,7 @@ class Certifier {
     }
     MARROW_RETURN_IF_ERROR(RefineAll(progress));
     MARROW_RETURN_IF_ERROR(OrthogonaliseWindows());
+    MARROW_RETURN_IF_ERROR(CheckOrthonormal());
     MARROW_RETURN_IF_ERROR(Count());
     return std::move(spectrum_);
   }
@@ -210,6 +216,26 @@ class Certifier {
       MeasureResiduals(laplacian_, first, end, spectrum_);
     }
     MeasureResiduals(laplacian_, 0, 1, spectrum_);
+    return absl::OkStatus();
+  }
+
+  // Windows that part a cluster may find one vector of it twice.
+  absl::Status CheckOrthonormal() {
+    const double most = std::max(kOrthonormal, kOrthonormalShare * residual_);
+    const Eigen::MatrixXd& phi = spectrum_.eigenvectors;
+    for (const auto& [first, end] : windows_) {
+      MARROW_RETURN_IF_ERROR(cancel_.Check());
+      const Eigen::Index width = end - first;
+      Eigen::MatrixXd products =
+          phi.leftCols(end).transpose() *
+          (laplacian_.M.asDiagonal() * phi.middleCols(first, width));
+      products.bottomRows(width) -= Eigen::MatrixXd::Identity(width, width);
+      if (!(products.cwiseAbs().maxCoeff() <= most))
+        return WithReason(
+            absl::InternalError("so many eigenvalues are equal that their "
+                                "vectors cannot be told apart"),
+            kReasonSolverNotConverged);
+    }
     return absl::OkStatus();
   }
 

@@ -53,7 +53,8 @@ uint32_t WithStrictGuards(uint32_t count);
 // most `residual` or no longer falls, and counts. `pairs` are those of the
 // mesh, with about that residual before they were rounded. Deterministic.
 // Thread safe. Errors: CANCELLED; RESOURCE_EXHAUSTED; INTERNAL with reason
-// SOLVER_NOT_CONVERGED where a pair is missing or there twice.
+// SOLVER_NOT_CONVERGED where a pair is missing or there twice, or the vectors
+// of very many equal eigenvalues cannot be told apart.
 absl::StatusOr<CertifiedSpectrum> CertifySpectrum(
     const CanonicalMesh& mesh, const EigenPairs& pairs, uint32_t count,
     double residual, const CancelToken& cancel,

@@ -247,31 +247,6 @@ class StrictSolver {
   CertifiedSpectrum spectrum_;
 };
 
-// Windows that part a cluster may find one vector of it twice.
-absl::Status CheckOrthonormal(const CanonicalMesh& mesh,
-                              const CertifiedSpectrum& spectrum,
-                              const CancelToken& cancel) {
-  constexpr double kMost = 1e-8;
-  MARROW_ASSIGN_OR_RETURN(const Laplacian laplacian,
-                          BuildLaplacian(mesh.mesh, cancel));
-  const Eigen::MatrixXd& phi = spectrum.eigenvectors;
-  for (Eigen::Index begin = 0; begin < phi.cols(); begin += kColumns) {
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-    const auto width = std::min<Eigen::Index>(kColumns, phi.cols() - begin);
-    Eigen::MatrixXd products =
-        phi.leftCols(begin + width).transpose() *
-        (laplacian.M.asDiagonal() * phi.middleCols(begin, width));
-    products.bottomRows(width) -= Eigen::MatrixXd::Identity(width, width);
-    if (!(products.cwiseAbs().maxCoeff() <= kMost))
-      return WithReason(
-          absl::InternalError(
-              "so many eigenvalues are equal that their vectors cannot be told "
-              "apart to the last digits; ask for a usual spectrum"),
-          kReasonSolverNotConverged);
-  }
-  return absl::OkStatus();
-}
-
 absl::StatusOr<CertifiedSpectrum> RefineUsualPairs(
     const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
     const ProgressCallback& progress) {
@@ -279,14 +254,10 @@ absl::StatusOr<CertifiedSpectrum> RefineUsualPairs(
       const auto pairs,
       SolverEigenPairSource(kStrictSolverTolerance)
           .Get(mesh, WithStrictGuards(count), cancel, nullptr));
-  MARROW_ASSIGN_OR_RETURN(
-      CertifiedSpectrum spectrum,
-      CertifySpectrum(mesh, *pairs, count, kStrictResidual, cancel,
-                      [&](double share) {
-                        progress(kSolverShare + (1 - kSolverShare) * share);
-                      }));
-  MARROW_RETURN_IF_ERROR(CheckOrthonormal(mesh, spectrum, cancel));
-  return spectrum;
+  return CertifySpectrum(mesh, *pairs, count, kStrictResidual, cancel,
+                         [&](double share) {
+                           progress(kSolverShare + (1 - kSolverShare) * share);
+                         });
 }
 
 }  // namespace
