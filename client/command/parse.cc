@@ -186,7 +186,7 @@ void AddMethod(CLI::App& app, MethodArguments& arguments) {
       ->check(CheckNumber)
       ->type_name("X");
   app.add_option("--tolerance", arguments.tolerance,
-                 "Share of vertices that may still move, 0 to 0.5 (0.01)")
+                 "Share of faces that may still move, 0 to 0.5 (0.01)")
       ->check(CheckNumber)
       ->type_name("X");
   AddPairs(app, "--pairs", arguments.pairs);

@@ -72,7 +72,7 @@ std::vector<std::vector<uint32_t>> FacesOfLabels(
   return faces;
 }
 
-// The vertices' labels, those of their first faces, decide the convergence.
+// Those of their first faces.
 std::vector<uint32_t> VertexLabels(const Region& region,
                                    const std::vector<uint32_t>& labels) {
   std::vector<uint32_t> result(region.NumVertices());
@@ -120,19 +120,20 @@ Relaxation Relax(const Region& region, const MapSketch& sketch,
     if (cancel.IsCancelled()) break;
     ++result.iterations;
     const auto segments = FacesOfLabels(result.labels, structures.size());
-    std::vector<uint32_t> now = VertexLabels(region, result.labels);
     const bool starved =
         std::any_of(segments.begin(), segments.end(),
                     [](const auto& faces) { return faces.empty(); });
     if (!starved && !before.empty() &&
-        ShareChanged(before, now) <= options.tolerance)
+        ShareChanged(before, result.labels) <= options.tolerance)
       break;
     structures =
         StructuresOf(region, sketch.Phi(), segments, options.epsilon, team);
     // Numbers shift when a front is dropped: nothing to compare with.
-    before = starved ? std::vector<uint32_t>() : std::move(now);
+    before = starved ? std::vector<uint32_t>() : result.labels;
     // Most vertices meet the front again that they met before.
-    if (!starved) known = DistancesTo(sketch, structures, before, cancel, team);
+    if (!starved)
+      known = DistancesTo(sketch, structures,
+                          VertexLabels(region, result.labels), cancel, team);
   }
   return result;
 }

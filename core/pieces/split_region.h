@@ -40,7 +40,7 @@ struct SplitOptions {
   double kappa = 1.5;       // threshold of the initialisation, times Eq. 15
   double delta = 0.1;       // truncation of the diffusion map
   double epsilon = 0.01;    // tolerance around the least ADD, times Eq. 14
-  double tolerance = 0.01;  // share of vertices that may still move
+  double tolerance = 0.01;  // share of faces that may still move
 };
 
 // Why a region was not split.

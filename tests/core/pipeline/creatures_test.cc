@@ -1,6 +1,7 @@
 // Whole runs over posed creatures.
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -44,15 +45,22 @@ TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
 
 TEST_P(CreatureTest, RotationAndScaleKeepThePartition) {
   const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
-  const RecordingSink run = RunOn(mesh, TwoLevels());
-  const RecordingSink other =
-      RunOn(Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), TwoLevels());
-  ASSERT_EQ(other.levels.size(), run.levels.size());
-  for (size_t i = 0; i < run.levels.size(); ++i)
-    EXPECT_LE(RandIndexDifference(other.levels[i].face_labels,
-                                  run.levels[i].face_labels),
-              0.01)
-        << "level " << i + 1;
+  SegmentationOptions merge;
+  merge.levels = 3;
+  for (const SegmentationOptions& options : {TwoLevels(), merge}) {
+    const RecordingSink run = RunOn(mesh, options);
+    for (const TriangleMesh& moved :
+         {Scaled(Rotated(mesh, {2, -1, 1}, 0.7), 12.5), Scaled(mesh, 0.01),
+          Rotated(mesh, {0, 0, 1}, std::numbers::pi)}) {
+      const RecordingSink other = RunOn(moved, options);
+      ASSERT_EQ(other.levels.size(), run.levels.size());
+      for (size_t i = 0; i < run.levels.size(); ++i)
+        EXPECT_LE(RandIndexDifference(other.levels[i].face_labels,
+                                      run.levels[i].face_labels),
+                  0.002)
+            << "level " << i + 1;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, CreatureTest,
