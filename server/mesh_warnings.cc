@@ -31,8 +31,10 @@ struct Kind {
 
 constexpr Kind kKinds[] = {
     {"WELDED_POINTS", false, &MeshReport::welded_points,
-     "point lies where another does; it is welded to it",
-     "points lie where others do; they are welded to those"},
+     "point of the payload lies where another does, as at a seam or where the "
+     "surface is not manifold; it is welded to it",
+     "points of the payload lie where others do, as at seams and where the "
+     "surface is not manifold; they are welded to those"},
     {"CRACKS", true, &MeshReport::crack_points,
      "vertex lies beside another with a crack between them; they are made one",
      "vertices lie beside others with cracks between them; they are made one "

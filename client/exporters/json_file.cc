@@ -63,6 +63,8 @@ Json CutJson(const client::Cut& cut, const CutNote& asked) {
   std::map<uint32_t, uint64_t> face_counts = CountFaces(cut.level);
   Json segments = Json::array();
   for (const SegmentNode& segment : cut.segments) {
+    // A polygon has one label: one that is cut through leaves some without.
+    if (!face_counts.contains(segment.id)) continue;
     segments.push_back({{"id", segment.id},
                         {"faces", face_counts[segment.id]},
                         {"parent", IdOrNull(segment.parent)},
@@ -75,7 +77,7 @@ Json CutJson(const client::Cut& cut, const CutNote& asked) {
   Json skeleton = SkeletonJson(cut.level);
   skeleton.erase("level");
   return {{"spec", asked.text},       {"closed", asked.closed},
-          {"open", asked.open},       {"number", cut.segments.size()},
+          {"open", asked.open},       {"number", segments.size()},
           {"salience", cut.salience}, {"segments", segments},
           {"skeleton", skeleton}};
 }

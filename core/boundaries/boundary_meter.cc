@@ -51,11 +51,18 @@ BoundaryMeter::BoundaryMeter(const TriangleMesh& mesh,
 double BoundaryMeter::StrengthBetween(const PieceGraph& graph,
                                       const PieceGraph::Pair& groups) {
   const auto boundary = graph.boundaries().find(groups);
-  if (boundary != graph.boundaries().end() && !boundary->second.empty())
-    return Strength(MeasureBoundary(graph, groups));
-  const double share = share_ * std::min(graph.AreaOfShells(groups.first),
-                                         graph.AreaOfShells(groups.second));
-  return 1 / (1 + std::pow(kShellShare / std::max(kLeastShare, share), 2));
+  if (boundary == graph.boundaries().end() || boundary->second.empty())
+    return AsPart(std::min(graph.AreaOfShells(groups.first),
+                           graph.AreaOfShells(groups.second)),
+                  kShellShare);
+  return Strength(MeasureBoundary(graph, groups)) *
+         AsPart(std::min(graph.Area(groups.first), graph.Area(groups.second)),
+                kSpeckShare);
+}
+
+double BoundaryMeter::AsPart(double area, double half) const {
+  const double share = std::max(kLeastShare, share_ * area);
+  return 1 / (1 + std::pow(half / share, 2));
 }
 
 Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,

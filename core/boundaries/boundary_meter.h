@@ -57,11 +57,13 @@ class BoundaryMeter {
                 const std::vector<double>& face_areas,
                 const Curvature& curvature, double share = 1);
 
-  // The strength of the boundary of two groups. Where no edge has faces of both
-  // they are of different shells, and it is s^2 / (s^2 + kShellShare^2), s
-  // being the share, in the area of all bodies, of the shells of one group, and
-  // of the group for which that is less: whoever made a shell of its own, and a
-  // large one, made a part.
+  // The strength of the boundary of two groups: Strength() times
+  // s^2 / (s^2 + kSpeckShare^2), s being the share, in the area of all bodies,
+  // of the smaller group, for people draw no parts of a few faces, and none had
+  // a say in the weights. Where no edge has faces of both they are of different
+  // shells, and it is s^2 / (s^2 + kShellShare^2), s being the share of the
+  // shells of one group, and of the group for which that is less: whoever made
+  // a shell of its own, and a large one, made a part.
   double StrengthBetween(const PieceGraph& graph,
                          const PieceGraph::Pair& groups);
 
@@ -80,6 +82,9 @@ class BoundaryMeter {
     double radius;
   };
 
+  // Whether so much is a part, 0 to 1; `half` of the area of all bodies is one
+  // as likely as not.
+  double AsPart(double area, double half) const;
   double EdgeLength(uint32_t a, uint32_t b) const;
   // kSaddle* at a width.
   double SaddleAlong(const Cut& cut, double width) const;

@@ -42,6 +42,10 @@ inline constexpr Measures kStrengthWeights = {
 // Not fitted: people were not asked about shells.
 inline constexpr double kShellShare = 0.0087;
 
+// Of the area: so small a group is not a part, whatever its boundary. It takes
+// nothing to speak of from a finger, which has ten times as much.
+inline constexpr double kSpeckShare = 2e-4;
+
 // Levels are the cuts of the merged pieces at these saliences, the same for
 // every mesh. The second is the automatic cut: boundaries that are kept more
 // likely than 2 to 1. From 0.6 to 0.7 the Rand index of unseen categories moves

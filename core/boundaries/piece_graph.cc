@@ -32,12 +32,16 @@ PieceGraph::PieceGraph(const Adjacency& adjacency,
       for (size_t j = i + 1; j < around.size(); ++j)
         boundaries_[{around[i], around[j]}].push_back(e);
   }
-  if (links.empty()) return;
-  for (uint32_t f = 0; f < group_of_face_.size(); ++f)
+  for (uint32_t f = 0; !links.empty() && f < group_of_face_.size(); ++f)
     for (uint32_t g : links.Of(f))
       if (group_of_face_[f] < group_of_face_[g])
         boundaries_.try_emplace({group_of_face_[f], group_of_face_[g]});
-  FindShells(adjacency, face_areas);
+  neighbours_.resize(count);
+  for (const auto& [pair, edges] : boundaries_) {
+    neighbours_[pair.first].insert(pair.second);
+    neighbours_[pair.second].insert(pair.first);
+  }
+  if (!links.empty()) FindShells(adjacency, face_areas);
 }
 
 void PieceGraph::FindShells(const Adjacency& adjacency,
@@ -48,18 +52,15 @@ void PieceGraph::FindShells(const Adjacency& adjacency,
   for (uint32_t f = 0; f < shell.size(); ++f)
     shell_areas_[shell[f]] += face_areas[f];
   for (const auto& faces : faces_) {
-    std::vector<uint32_t>& own = shells_.emplace_back();
-    for (uint32_t f : faces) own.push_back(shell[f]);
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
+    std::set<uint32_t>& own = shells_.emplace_back();
+    for (uint32_t f : faces) own.insert(shell[f]);
+    double& area = areas_of_shells_.emplace_back(0);
+    for (uint32_t s : own) area += shell_areas_[s];
   }
 }
 
 double PieceGraph::AreaOfShells(uint32_t group) const {
-  if (shells_.empty()) return areas_[group];
-  double area = 0;
-  for (uint32_t shell : shells_[group]) area += shell_areas_[shell];
-  return area;
+  return shells_.empty() ? areas_[group] : areas_of_shells_[group];
 }
 
 std::vector<uint32_t> PieceGraph::Groups() const {
@@ -76,25 +77,25 @@ void PieceGraph::Merge(uint32_t a, uint32_t b) {
   areas_[a] += areas_[b];
   areas_[b] = 0;
   if (!shells_.empty()) {
-    std::vector<uint32_t> joined;
-    std::set_union(shells_[a].begin(), shells_[a].end(), shells_[b].begin(),
-                   shells_[b].end(), std::back_inserter(joined));
-    shells_[a] = std::move(joined);
+    for (uint32_t shell : shells_[b])
+      if (shells_[a].insert(shell).second)
+        areas_of_shells_[a] += shell_areas_[shell];
+    shells_[b] = {};
   }
+  MergeBoundaries(a, b);
+}
+
+void PieceGraph::MergeBoundaries(uint32_t a, uint32_t b) {
   boundaries_.erase({a, b});
-  std::map<Pair, Boundary> moved;
-  for (auto it = boundaries_.begin(); it != boundaries_.end();) {
-    const auto [first, second] = it->first;
-    if (first != b && second != b) {
-      ++it;
-      continue;
-    }
-    const uint32_t other = first == b ? second : first;
-    moved[std::minmax(a, other)] = std::move(it->second);
-    it = boundaries_.erase(it);
-  }
-  for (auto& [pair, edges] : moved) {
-    Boundary& boundary = boundaries_[pair];
+  neighbours_[a].erase(b);
+  for (uint32_t other : std::exchange(neighbours_[b], {})) {
+    if (other == a) continue;
+    neighbours_[other].erase(b);
+    neighbours_[other].insert(a);
+    neighbours_[a].insert(other);
+    const Boundary edges =
+        std::move(boundaries_.extract(std::minmax(b, other)).mapped());
+    Boundary& boundary = boundaries_[std::minmax(a, other)];
     Boundary joined;
     std::set_union(boundary.begin(), boundary.end(), edges.begin(), edges.end(),
                    std::back_inserter(joined));

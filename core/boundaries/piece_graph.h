@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -40,24 +41,33 @@ class PieceGraph {
   double AreaOfShells(uint32_t group) const;
   const std::map<Pair, Boundary>& boundaries() const { return boundaries_; }
 
+  // Those that have a boundary with the group.
+  const std::set<uint32_t>& Neighbours(uint32_t group) const {
+    return neighbours_[group];
+  }
+
   // Those that are left, ascending.
   std::vector<uint32_t> Groups() const;
 
-  // Makes one group, a, of the groups a < b.
+  // Makes one group, a, of the groups a < b. Time: that of b and its
+  // boundaries.
   void Merge(uint32_t a, uint32_t b);
 
  private:
   void FindShells(const Adjacency& adjacency,
                   const std::vector<double>& face_areas);
+  void MergeBoundaries(uint32_t a, uint32_t b);
 
   std::vector<uint32_t> group_of_face_;
   std::vector<std::vector<uint32_t>> faces_;
   std::vector<double> areas_;
   // Where there are links: the shells of each group, ascending, and the area of
   // each shell.
-  std::vector<std::vector<uint32_t>> shells_;
+  std::vector<std::set<uint32_t>> shells_;
   std::vector<double> shell_areas_;
+  std::vector<double> areas_of_shells_;  // of each group
   std::map<Pair, Boundary> boundaries_;
+  std::vector<std::set<uint32_t>> neighbours_;
 };
 
 }  // namespace marrow

@@ -47,7 +47,8 @@ class Planter {
         ToWhole(largest.nodes[0].medial_structure, bodies_.bodies[0].vertices);
     root.faces.resize(bodies_.anchors.size());
     std::iota(root.faces.begin(), root.faces.end(), 0u);
-    MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, root);
+    MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, root,
+                bodies_.anchors);
   }
 
   // Adds what belongs to `level` of the result. Nodes of one level are
@@ -76,7 +77,8 @@ class Planter {
       node.medial_structure =
           ToWholeVertices(body, mesh_.mesh, old.medial_structure, node.faces);
       node.faces = WithAttached(std::move(node.faces));
-      MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, node);
+      MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, node,
+                  bodies_.anchors);
       ids.push_back(node.id);
       result_.nodes.push_back(std::move(node));
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <set>
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
@@ -12,25 +12,46 @@
 namespace marrow {
 namespace {
 
-using Strengths = std::map<PieceGraph::Pair, double>;
+// The boundaries of a graph by strength, the weakest first; of equal ones that
+// of the least pair.
+class Strengths {
+ public:
+  Strengths(const PieceGraph& graph, BoundaryMeter& meter)
+      : graph_(graph), meter_(meter) {}
 
-PieceGraph::Pair Weakest(const Strengths& strengths) {
-  return std::min_element(
-             strengths.begin(), strengths.end(),
-             [](const auto& x, const auto& y) { return x.second < y.second; })
-      ->first;
-}
+  bool empty() const { return queue_.empty(); }
+  std::pair<double, PieceGraph::Pair> Weakest() const {
+    return *queue_.begin();
+  }
+  void Measure(const PieceGraph::Pair& pair) {
+    Forget(pair);
+    const double strength = meter_.StrengthBetween(graph_, pair);
+    strength_[pair] = strength;
+    queue_.insert({strength, pair});
+  }
+  void Forget(const PieceGraph::Pair& pair) {
+    const auto known = strength_.find(pair);
+    if (known == strength_.end()) return;
+    queue_.erase({known->second, pair});
+    strength_.erase(known);
+  }
 
-// Measures the boundaries of group `a` again after `b` has become part of it.
-void Update(const PieceGraph& graph, const PieceGraph::Pair& merged,
-            BoundaryMeter& meter, Strengths& strengths) {
-  const auto [a, b] = merged;
-  std::erase_if(strengths, [b = b](const auto& entry) {
-    return entry.first.first == b || entry.first.second == b;
-  });
-  for (const auto& [pair, edges] : graph.boundaries())
-    if (pair.first == a || pair.second == a)
-      strengths[pair] = meter.StrengthBetween(graph, pair);
+ private:
+  const PieceGraph& graph_;
+  BoundaryMeter& meter_;
+  std::map<PieceGraph::Pair, double> strength_;
+  std::set<std::pair<double, PieceGraph::Pair>> queue_;
+};
+
+// Merges, and measures the boundaries of what comes of it.
+void Merge(const PieceGraph::Pair& pair, PieceGraph& graph,
+           Strengths& strengths) {
+  const auto [a, b] = pair;
+  for (uint32_t other : graph.Neighbours(b))
+    strengths.Forget(std::minmax(b, other));
+  graph.Merge(a, b);
+  for (uint32_t other : graph.Neighbours(a))
+    strengths.Measure(std::minmax(a, other));
 }
 
 // Shells that touch in a vertex, and have no boundary: the smallest goes with
@@ -93,20 +114,19 @@ absl::StatusOr<MergeOrder> MergePieces(PieceGraph graph, BoundaryMeter& meter,
                                        const CancelToken& cancel, double end) {
   MergeOrder order;
   order.num_pieces = graph.NumPieces();
-  Strengths strengths;
+  Strengths strengths(graph, meter);
   for (const auto& [pair, edges] : graph.boundaries()) {
     MARROW_RETURN_IF_ERROR(cancel.Check());
-    strengths[pair] = meter.StrengthBetween(graph, pair);
+    strengths.Measure(pair);
   }
   double salience = 0;
   while (!strengths.empty()) {
     MARROW_RETURN_IF_ERROR(cancel.Check());
-    const PieceGraph::Pair pair = Weakest(strengths);
-    salience = std::max(salience, strengths[pair]);
+    const auto [strength, pair] = strengths.Weakest();
+    salience = std::max(salience, strength);
     if (salience >= end) break;
     order.merges.push_back({pair.first, pair.second, salience});
-    graph.Merge(pair.first, pair.second);
-    Update(graph, pair, meter, strengths);
+    Merge(pair, graph, strengths);
   }
   if (strengths.empty()) MergeShells(graph, meter, end, salience, order);
   return order;

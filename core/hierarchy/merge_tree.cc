@@ -19,12 +19,15 @@
 #include "core/hierarchy/tree_builder.h"
 #include "core/operators/laplacian.h"
 #include "core/pieces/region.h"
+#include "core/pieces/stray_pieces.h"
 
 namespace marrow {
 namespace {
 
 // The finding of the pieces takes about this share of the time.
 constexpr double kPiecesDone = 0.7;
+// Of the area of a piece: less than this on another shell is no piece there.
+constexpr double kPassingShare = 0.1;
 // And its eigen-pairs this share of a level.
 constexpr double kPairsShare = 0.5;
 
@@ -63,12 +66,16 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
 }
 
 // Fronts cross from shell to shell; where one ends there must be a boundary, or
-// none could be kept.
+// none could be kept. What a front took of the next shell in passing is no
+// piece of that.
 std::vector<uint32_t> OfOneShell(const SplitContext& context,
                                  std::vector<uint32_t> piece_of_face) {
-  return context.links.empty()
-             ? std::move(piece_of_face)
-             : ConnectedPieces(context.adjacency, piece_of_face);
+  if (context.links.empty()) return piece_of_face;
+  const size_t count =
+      *std::max_element(piece_of_face.begin(), piece_of_face.end()) + 1;
+  JoinStrayPieces(context.adjacency, context.face_areas, {}, count,
+                  piece_of_face, kPassingShare);
+  return ConnectedPieces(context.adjacency, piece_of_face);
 }
 
 // What boundaries are measured on.

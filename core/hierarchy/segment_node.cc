@@ -8,19 +8,21 @@ namespace marrow {
 
 void MeasureNode(const TriangleMesh& mesh,
                  const std::vector<double>& face_areas, double mesh_area,
-                 SegmentNode& node) {
-  double share = 0;
+                 SegmentNode& node, std::span<const uint32_t> anchors) {
+  double share = 0, own_share = 0;
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
   Eigen::Vector3d plain = Eigen::Vector3d::Zero();
   for (uint32_t f : node.faces) {
+    share += face_areas[f];
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     for (uint32_t v : mesh.faces[f]) centre += mesh.Position(v) / 3;
-    weighted += face_areas[f] * centre;
     plain += centre / static_cast<double>(node.faces.size());
-    share += face_areas[f];
+    if (!anchors.empty() && anchors[f] != f) continue;
+    weighted += face_areas[f] * centre;
+    own_share += face_areas[f];
   }
   node.area = share * mesh_area;
-  node.centroid = share > 0 ? Eigen::Vector3d(weighted / share) : plain;
+  node.centroid = own_share > 0 ? Eigen::Vector3d(weighted / own_share) : plain;
 }
 
 SegmentNode MakeNode(const SplitContext& context, double mesh_area,

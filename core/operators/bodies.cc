@@ -12,6 +12,7 @@
 #include "core/mesh/submesh.h"
 #include "core/operators/laplacian.h"
 #include "core/operators/seams.h"
+#include "core/operators/surface_points.h"
 
 namespace marrow {
 namespace {
@@ -137,71 +138,92 @@ size_t CountBodies(const std::vector<Part>& parts) {
   return count;
 }
 
-// Finds the vertex of the bodies nearest to a place.
-class NearestVertex {
+// Finds the face of the bodies nearest to a place, by their vertices and by
+// points inside coarse faces.
+class NearestFace {
  public:
-  NearestVertex(const TriangleMesh& mesh, std::vector<uint32_t> vertices)
-      : cloud_{mesh, std::move(vertices), UnitOf(mesh)}, tree_(3, cloud_) {}
+  // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_attached`, by
+  // face: whether it is of no body.
+  NearestFace(const TriangleMesh& mesh,
+              const std::vector<uint32_t>& face_of_vertex,
+              const std::vector<bool>& is_attached, double near)
+      : unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
+        places_(mesh.positions * unit_),
+        cloud_(places_, face_of_vertex),
+        tree_(3, Add(mesh, is_attached, near)) {}
 
-  // Lowers `best`, a squared distance; whether it could.
-  bool Improve(uint32_t from, double& best, uint32_t& nearest) const {
-    const Eigen::Vector3d place = cloud_.mesh.Position(from) * cloud_.unit;
+  // Lowers `best`, a squared distance, and tells the face where it could.
+  void Improve(uint32_t from, double& best, uint32_t& nearest) const {
+    const Eigen::Vector3d place = places_.row(from).transpose();
     uint32_t found = 0;
     double distance = std::numeric_limits<double>::infinity();
     tree_.knnSearch(place.data(), 1, &found, &distance);
-    if (!(distance < best)) return false;
+    if (!(distance < best)) return;
     best = distance;
-    nearest = cloud_.vertices[found];
-    return true;
+    nearest = cloud_.faces[found];
   }
 
  private:
-  // Squares of coordinates must neither overflow nor vanish.
-  static double UnitOf(const TriangleMesh& mesh) {
-    return 1 / mesh.positions.cwiseAbs().maxCoeff();
-  }
-
-  // nanoflann's view of the vertices.
+  // nanoflann's view of the points.
   struct Cloud {
-    const TriangleMesh& mesh;
-    std::vector<uint32_t> vertices;
-    double unit;
-
-    size_t kdtree_get_point_count() const { return vertices.size(); }
-    double kdtree_get_pt(size_t i, size_t d) const {
-      return mesh.positions(vertices[i], d) * unit;
+    Cloud(const Positions& vertices,
+          const std::vector<uint32_t>& face_of_vertex) {
+      for (uint32_t v = 0; v < face_of_vertex.size(); ++v) {
+        if (face_of_vertex[v] == kNoIndex) continue;
+        places.push_back(vertices.row(v));
+        faces.push_back(face_of_vertex[v]);
+      }
     }
+    size_t kdtree_get_point_count() const { return places.size(); }
+    double kdtree_get_pt(size_t i, size_t d) const { return places[i][d]; }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
       return false;
     }
+
+    std::vector<Eigen::RowVector3d> places;
+    std::vector<uint32_t> faces;
   };
 
+  const Cloud& Add(const TriangleMesh& mesh,
+                   const std::vector<bool>& is_attached, double near) {
+    const FacePoints inside = PointsInFaces(mesh, places_, near * unit_);
+    for (uint32_t i = 0; i < inside.face.size(); ++i) {
+      if (is_attached[inside.face[i]]) continue;
+      cloud_.places.push_back(inside.places.row(i));
+      cloud_.faces.push_back(inside.face[i]);
+    }
+    return cloud_;
+  }
+
+  // Squares of coordinates must neither overflow nor vanish.
+  double unit_;
+  Positions places_;
   Cloud cloud_;
   nanoflann::KDTreeSingleIndexAdaptor<
       nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
       tree_;
 };
 
-// Rule 4.
+// Rule 4. `near` is the bridging distance.
 void Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
-            Bodies& bodies) {
+            double near, Bodies& bodies) {
   if (attached.empty()) return;
   std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
   for (const Body& body : bodies.bodies)
     for (size_t i = body.faces.size(); i-- > 0;)
       for (uint32_t v : mesh.faces[body.faces[i]])
         first_face[v] = body.faces[i];
-  std::vector<uint32_t> vertices;
-  for (uint32_t v = 0; v < mesh.NumVertices(); ++v)
-    if (first_face[v] != kNoIndex) vertices.push_back(v);
-  const NearestVertex near(mesh, std::move(vertices));
+  std::vector<bool> is_attached(mesh.NumFaces(), false);
+  for (const Part& part : attached)
+    for (uint32_t f : part.faces) is_attached[f] = true;
+  const NearestFace faces(mesh, first_face, is_attached, near);
   for (const Part& part : attached) {
     double least = std::numeric_limits<double>::infinity();
-    uint32_t nearest = bodies.bodies[0].vertices[0];
+    uint32_t nearest = bodies.bodies[0].faces[0];
     for (uint32_t f : part.faces)
-      for (uint32_t v : mesh.faces[f]) near.Improve(v, least, nearest);
-    for (uint32_t f : part.faces) bodies.anchors[f] = first_face[nearest];
+      for (uint32_t v : mesh.faces[f]) faces.Improve(v, least, nearest);
+    for (uint32_t f : part.faces) bodies.anchors[f] = nearest;
   }
 }
 
@@ -325,7 +347,7 @@ Bodies SortOut(CanonicalMesh& mesh) {
   } else {
     for (Part& part : parts)
       result.bodies.push_back(MakeBody(mesh.mesh, std::move(part)));
-    Attach(mesh.mesh, attached, result);
+    Attach(mesh.mesh, attached, distance, result);
   }
   mesh.report.bridges = mesh.report.body_vertices = 0;
   double sum = 0;

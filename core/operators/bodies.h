@@ -4,8 +4,8 @@
 // A component is what shared vertices connect, after welding. Its size is its
 // share of the mesh's area. In order:
 //  1. Of weight is a component of at least kWeight. Where those hold less than
-//     kMainShare of the area (a creature of scales or plates), of at least
-//     kLightWeight; the largest always is.
+//     kMainShare of the area (a creature of scales or plates, not one with a
+//     body under its hair), of at least kLightWeight; the largest always is.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
 //     weight are one body, through any number of others. A body has one
 //     operator, one spectrum and one tree: it is segmented as if its shells had
@@ -15,8 +15,8 @@
 //     child of the root, if there are several; of the kMaxBodies largest.
 //  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
 //     a body that is too small for rule 3, has at every level the label of the
-//     face nearest to it by vertices. It enters no operator, so a mesh with
-//     specks is segmented exactly as without.
+//     face nearest to it by points (surface_points.h). It enters no operator,
+//     so a mesh with specks is segmented exactly as without.
 //  5. A body of more than kLargeBody vertices is computed on a coarse mesh of
 //     about kCoarseVertices (core/mesh/coarse_mesh.h): its parts are far larger
 //     than what that leaves out. Not where half of the vertices cannot go.
@@ -36,7 +36,7 @@ namespace marrow {
 
 inline constexpr double kWeight = 1e-2;
 inline constexpr double kLightWeight = 1e-4;
-inline constexpr double kMainShare = 0.5;
+inline constexpr double kMainShare = 0.05;
 inline constexpr double kBodyShare = 0.05;
 inline constexpr uint32_t kMaxBodies = 32;
 inline constexpr uint32_t kLargeBody = 80'000;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/components.h"
 #include "core/mesh/unit_box.h"
 #include "core/operators/body_tree.h"
+#include "core/operators/surface_points.h"
 
 namespace marrow {
 namespace {
@@ -28,36 +30,76 @@ double UnitBridgingDistance(const TriangleMesh& mesh, const Positions& points) {
                     kMost * diagonal);
 }
 
+// The vertices, and points inside coarse faces for which a corner stands.
+class Shells {
+ public:
+  Shells(const TriangleMesh& mesh, const Positions& places, double near)
+      : Shells(mesh.NumVertices(), places, PointsInFaces(mesh, places, near)) {}
+
+  uint32_t NumPoints() const { return static_cast<uint32_t>(vertex_.size()); }
+  // `body` of each vertex. To be called before the searches below.
+  void SetBodies(const std::vector<uint32_t>& body) {
+    body_.resize(vertex_.size());
+    for (uint32_t i = 0; i < vertex_.size(); ++i) body_[i] = body[vertex_[i]];
+    tree_.SetBodies(body_);
+  }
+  uint32_t BodyOf(uint32_t point) const { return body_[point]; }
+  void Improve(uint32_t point, Candidate& best) const {
+    tree_.Improve(point, best);
+  }
+  // That of the vertices. The lesser first.
+  Bridge BridgeOf(const Candidate& candidate) const {
+    const auto [a, b] = candidate.ends;
+    return {std::min(vertex_[a], vertex_[b]), std::max(vertex_[a], vertex_[b])};
+  }
+
+ private:
+  Shells(uint32_t vertices, const Positions& places, const FacePoints& inside)
+      : vertex_(vertices), tree_(Together(places, inside.places)) {
+    std::iota(vertex_.begin(), vertex_.end(), 0u);
+    vertex_.insert(vertex_.end(), inside.corner.begin(), inside.corner.end());
+  }
+
+  static Positions Together(const Positions& a, const Positions& b) {
+    Positions all(a.rows() + b.rows(), 3);
+    all << a, b;
+    return all;
+  }
+
+  std::vector<uint32_t> vertex_;  // of each point
+  std::vector<uint32_t> body_;
+  BodyTree tree_;
+};
+
 // Every body but the largest looks for its nearest neighbour: the largest is
-// found by others, and its many vertices need not search.
-std::vector<Candidate> NearestBodies(const BodyTree& tree,
-                                     const std::vector<uint32_t>& body,
+// found by others, and its many points need not search.
+std::vector<Candidate> NearestBodies(const Shells& shells, uint32_t vertices,
                                      double longest_square) {
-  const uint32_t n = static_cast<uint32_t>(body.size());
-  std::vector<uint32_t> size(n, 0);
-  for (uint32_t b : body) ++size[b];
+  std::vector<uint32_t> size(vertices, 0);
+  for (uint32_t i = 0; i < shells.NumPoints(); ++i) ++size[shells.BodyOf(i)];
   const uint32_t largest = static_cast<uint32_t>(
       std::max_element(size.begin(), size.end()) - size.begin());
-  std::vector<Candidate> best(n, {longest_square});
-  for (uint32_t v = 0; v < n; ++v)
-    if (body[v] != largest) tree.Improve(v, best[body[v]]);
+  std::vector<Candidate> best(vertices, {longest_square});
+  for (uint32_t i = 0; i < shells.NumPoints(); ++i)
+    if (shells.BodyOf(i) != largest) shells.Improve(i, best[shells.BodyOf(i)]);
   return best;
 }
 
 // Every round joins each body to its nearest, so there are O(log n).
-std::vector<Bridge> Span(BodyTree& tree, DisjointSets sets, uint32_t bodies,
-                         double longest_square) {
+std::vector<Bridge> Span(Shells& shells, DisjointSets sets, uint32_t vertices,
+                         uint32_t bodies, double longest_square) {
   std::vector<Bridge> bridges;
   for (bool joined = true; joined && bodies > 1;) {
     joined = false;
-    const std::vector<uint32_t> body = sets.Representatives();
-    tree.SetBodies(body);
-    std::vector<Candidate> best = NearestBodies(tree, body, longest_square);
+    shells.SetBodies(sets.Representatives());
+    std::vector<Candidate> best =
+        NearestBodies(shells, vertices, longest_square);
     std::sort(best.begin(), best.end());
     for (const Candidate& candidate : best) {
       if (!candidate.IsBridge()) continue;
-      if (!sets.Union(candidate.ends[0], candidate.ends[1])) continue;
-      bridges.push_back(candidate.ends);
+      const Bridge bridge = shells.BridgeOf(candidate);
+      if (!sets.Union(bridge[0], bridge[1])) continue;
+      bridges.push_back(bridge);
       --bodies;
       joined = true;
     }
@@ -78,10 +120,10 @@ std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest) {
   DisjointSets sets(n);
   const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
-  UnitPoints box = ToUnitBox(mesh);
+  const UnitPoints box = ToUnitBox(mesh);
   longest /= box.unit;
-  BodyTree tree(std::move(box.points));
-  return Span(tree, sets, components, longest * longest);
+  Shells shells(mesh, box.points, UnitBridgingDistance(mesh, box.points));
+  return Span(shells, sets, n, components, longest * longest);
 }
 
 std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
@@ -89,17 +131,16 @@ std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
   DisjointSets sets(n);
   const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
-  UnitPoints box = ToUnitBox(mesh);
+  const UnitPoints box = ToUnitBox(mesh);
   const double near = UnitBridgingDistance(mesh, box.points);
-  BodyTree tree(std::move(box.points));
-  std::vector<Bridge> bridges =
-      Span(tree, sets, components, std::numeric_limits<double>::infinity());
-  const std::vector<uint32_t> component = sets.Representatives();
-  tree.SetBodies(component);
-  for (uint32_t v = 0; v < n; ++v) {
+  Shells shells(mesh, box.points, near);
+  std::vector<Bridge> bridges = Span(shells, sets, n, components,
+                                     std::numeric_limits<double>::infinity());
+  shells.SetBodies(sets.Representatives());
+  for (uint32_t i = 0; i < shells.NumPoints(); ++i) {
     Candidate nearest{near * near};
-    tree.Improve(v, nearest);
-    if (nearest.IsBridge()) bridges.push_back(nearest.ends);
+    shells.Improve(i, nearest);
+    if (nearest.IsBridge()) bridges.push_back(shells.BridgeOf(nearest));
   }
   std::sort(bridges.begin(), bridges.end());
   bridges.erase(std::unique(bridges.begin(), bridges.end()), bridges.end());

@@ -29,13 +29,14 @@ inline constexpr double kBridgeWeight = 0.5;
 double BridgingDistance(const TriangleMesh& mesh);
 
 // A minimum spanning tree of the components by the distance of their nearest
-// vertices, without the bridges longer than `longest`, in units of the
-// positions (Boruvka's rounds over a k-d tree). Of equally near pairs the least
-// counts. Ascending; empty for a mesh in one piece.
+// points, vertices and some inside coarse faces (surface_points.h), for which
+// their corners stand, without the bridges longer than `longest`, in units of
+// the positions (Boruvka's rounds over a k-d tree). Of equally near pairs the
+// least counts. Ascending; empty for a mesh in one piece.
 std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest);
 
 // What the operator adds: the whole spanning tree, and a bridge from every
-// vertex to the nearest vertex of another component within BridgingDistance().
+// point to the nearest point of another component within BridgingDistance().
 // So two shells share as many bridges as the zone where they are near has
 // vertices, and a limb that is a shell of its own conducts as one that has
 // grown on. Ascending.

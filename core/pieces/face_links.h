@@ -1,4 +1,5 @@
-// Bridges between shells, as the fronts see them: pairs of faces.
+// Bridges between shells, and places where shells touch in a vertex, as the
+// fronts see them: pairs of faces.
 #ifndef MARROW_CORE_PIECES_FACE_LINKS_H_
 #define MARROW_CORE_PIECES_FACE_LINKS_H_
 
@@ -11,9 +12,14 @@
 
 namespace marrow {
 
+// Pairs of faces that share a vertex, of shells that share no edge: at each
+// such vertex the least face of every shell with the least face of all.
+std::vector<std::array<uint32_t, 2>> TouchingFaces(const Adjacency& adjacency);
+
 // For each bridge between two vertices, a link between the least faces of the
 // two: one face stands for all around its vertex, or a hub with many bridges
-// would cost the square of its degree. Immutable, thread safe.
+// would cost the square of its degree. Faces that touch are linked as well.
+// Immutable, thread safe.
 class FaceLinks {
  public:
   FaceLinks() = default;

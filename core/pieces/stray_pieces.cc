@@ -34,9 +34,8 @@ LabelPieces FindLabelPieces(const Adjacency& adjacency,
 }
 
 // For each piece, the label with which it shares the longest boundary, counted
-// in edges and links; its own where it touches no other. Only pieces that are
-// the largest of their label count as neighbours, so that every move ends in
-// one.
+// in edges and links; its own where it touches no other. Only pieces that stay
+// count as neighbours, so that every move ends in one.
 class LongestNeighbour {
  public:
   LongestNeighbour(const LabelPieces& pieces, const std::vector<bool>& is_main)
@@ -82,7 +81,8 @@ class LongestNeighbour {
 void JoinStrayPieces(const Adjacency& adjacency,
                      const std::vector<double>& face_areas,
                      std::span<const std::array<uint32_t, 2>> links,
-                     size_t num_labels, std::vector<uint32_t>& labels) {
+                     size_t num_labels, std::vector<uint32_t>& labels,
+                     double most) {
   // A stray that touches only strays is reached once they have moved.
   for (int round = 0; round < 8; ++round) {
     const LabelPieces pieces =
@@ -93,8 +93,10 @@ void JoinStrayPieces(const Adjacency& adjacency,
       if (best == kNoIndex || pieces.area[p] > pieces.area[best]) best = p;
     }
     std::vector<bool> is_main(pieces.label.size(), false);
-    for (uint32_t p : main)
-      if (p != kNoIndex) is_main[p] = true;
+    for (uint32_t p = 0; p < pieces.label.size(); ++p) {
+      const uint32_t largest = main[pieces.label[p]];
+      is_main[p] = p == largest || pieces.area[p] > most * pieces.area[largest];
+    }
     if (std::ranges::find(is_main, false) == is_main.end()) return;
     LongestNeighbour neighbours(pieces, is_main);
     for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)

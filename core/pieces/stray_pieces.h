@@ -17,11 +17,13 @@ namespace marrow {
 // label is in one piece afterwards where the mesh is.
 //
 // `links` are pairs of faces that count as neighbours. Labels are less than
-// `num_labels`. Deterministic.
+// `num_labels`. Pieces of more than `most` of the area of their label's largest
+// stay where they are. Deterministic.
 void JoinStrayPieces(const Adjacency& adjacency,
                      const std::vector<double>& face_areas,
                      std::span<const std::array<uint32_t, 2>> links,
-                     size_t num_labels, std::vector<uint32_t>& labels);
+                     size_t num_labels, std::vector<uint32_t>& labels,
+                     double most = 1);
 
 }  // namespace marrow
 

@@ -101,8 +101,8 @@ CutResult::Segment SegmentedMesh::Measure(
   }
   SegmentNode node;
   node.faces = faces;
-  MeasureNode(canonical().mesh, prepared().areas, canonical().report.area,
-              node);
+  MeasureNode(canonical().mesh, prepared().areas, canonical().report.area, node,
+              workspace_->bodies.anchors);
   measured.area = node.area;
   measured.centroid = node.centroid;
   measured.medial_structure = MedialStructure(faces);

@@ -10,6 +10,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "core/base/disjoint_sets.h"
+#include "core/pieces/face_links.h"
 
 namespace marrow {
 namespace {
@@ -100,28 +101,35 @@ Boundary LongestRun(const TriangleMesh& mesh, const Adjacency& adjacency,
 using Bridges = std::span<const std::array<uint32_t, 2>>;
 using BoundaryMap = std::map<std::pair<uint32_t, uint32_t>, Boundary>;
 
+uint32_t SharedVertex(const Triangle& a, const Triangle& b) {
+  return *std::find_first_of(a.begin(), a.end(), b.begin(), b.end());
+}
+
 // Where segments of different shells are near: in the middle of the bridges,
 // and about as long as the rim on which those stand, whose every vertex has
-// one.
+// one. Where shells touch in a vertex, at that.
 BoundaryMap BridgedBoundaries(const TriangleMesh& mesh,
                               const Adjacency& adjacency,
                               const std::vector<uint32_t>& place,
                               Bridges bridges) {
   BoundaryMap found;
-  for (const auto& [u, v] : bridges) {
-    const uint32_t f = adjacency.VertexFaces(u).front();
-    const auto [a, b] =
-        std::minmax(place[f], place[adjacency.VertexFaces(v).front()]);
+  const auto add = [&](uint32_t f, uint32_t g, const Eigen::Vector3d& middle) {
+    const auto [a, b] = std::minmax(place[f], place[g]);
     const auto [p, q] = adjacency.EdgeVertices(adjacency.FaceEdges(f)[0]);
     const double rim = 0.5 * (mesh.Position(p) - mesh.Position(q)).norm();
-    if (a == b || rim == 0) continue;
+    if (a == b || rim == 0) return;
     Boundary& boundary = found[{a, b}];
     boundary.a = a;
     boundary.b = b;
     boundary.bridged = true;
     boundary.length += rim;
-    boundary.centre += 0.5 * rim * (mesh.Position(u) + mesh.Position(v));
-  }
+    boundary.centre += rim * middle;
+  };
+  for (const auto& [u, v] : bridges)
+    add(adjacency.VertexFaces(u).front(), adjacency.VertexFaces(v).front(),
+        0.5 * (mesh.Position(u) + mesh.Position(v)));
+  for (const auto& [f, g] : TouchingFaces(adjacency))
+    add(f, g, mesh.Position(SharedVertex(mesh.faces[f], mesh.faces[g])));
   for (auto& [places, boundary] : found) boundary.centre /= boundary.length;
   return found;
 }

@@ -42,13 +42,16 @@ Bridges BruteForce(const TriangleMesh& mesh) {
   return bridges;
 }
 
-// Lone triangles and pairs of triangles whose corners `coordinate` gives.
-template <typename Coordinate>
+// Lone triangles and pairs of triangles, too small to be coarse: `place` gives
+// the coordinates of where they are, `corner` those of a corner from there.
+template <typename Coordinate, typename Offset>
 TriangleMesh Cloud(uint32_t bodies, std::mt19937& random,
-                   const Coordinate& coordinate) {
+                   const Coordinate& place, const Offset& corner) {
   TriangleMesh mesh;
   uint32_t n = 0;
+  std::vector<uint32_t> first;
   for (uint32_t body = 0; body < bodies; ++body) {
+    first.push_back(n);
     mesh.faces.push_back({n, n + 1, n + 2});
     n += 3;
     if (random() % 2) {
@@ -56,9 +59,14 @@ TriangleMesh Cloud(uint32_t bodies, std::mt19937& random,
       ++n;
     }
   }
+  first.push_back(n);
   mesh.positions.resize(n, 3);
-  for (Eigen::Index i = 0; i < mesh.positions.size(); ++i)
-    mesh.positions.data()[i] = coordinate();
+  for (uint32_t body = 0; body < bodies; ++body) {
+    const Eigen::RowVector3d at(place(), place(), place());
+    for (uint32_t v = first[body]; v < first[body + 1]; ++v)
+      mesh.positions.row(v) =
+          at + Eigen::RowVector3d(corner(), corner(), corner());
+  }
   return mesh;
 }
 
@@ -70,8 +78,9 @@ TEST(BridgesTest, NoneForOnePiece) {
 TEST(BridgesTest, AreAMinimumSpanningTreeOfRandomClouds) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    const TriangleMesh mesh =
-        Cloud(2 + 2 * seed, random, [&] { return random() * 0x1p-32; });
+    const TriangleMesh mesh = Cloud(
+        2 + 2 * seed, random, [&] { return random() * 0x1p-32; },
+        [&] { return random() * 0x1p-38; });
     EXPECT_EQ(SpanningBridges(mesh, kAnyLength), BruteForce(mesh)) << seed;
   }
 }
@@ -80,10 +89,18 @@ TEST(BridgesTest, AreAMinimumSpanningTreeOfRandomClouds) {
 TEST(BridgesTest, BreakTiesByTheLeastVertices) {
   for (uint32_t seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    TriangleMesh mesh = Cloud(30, random, [&] { return random() % 9; });
+    TriangleMesh mesh = Cloud(
+        60, random, [&] { return random() % 32; },
+        [&] { return random() % 2; });
     // A power of two as extent keeps scaled distances exact.
-    mesh.positions.row(0).setZero();
-    mesh.positions.row(1).setConstant(8);
+    TriangleMesh corner = SingleTriangle();
+    corner.positions << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+    for (double at : {0, 32}) {
+      const uint32_t n = mesh.NumVertices();
+      mesh.positions.conservativeResize(n + 3, 3);
+      mesh.positions.bottomRows(3) = (at - corner.positions.array()).abs();
+      mesh.faces.push_back({n, n + 1, n + 2});
+    }
     EXPECT_EQ(SpanningBridges(mesh, kAnyLength), BruteForce(mesh)) << seed;
   }
 }
@@ -91,8 +108,9 @@ TEST(BridgesTest, BreakTiesByTheLeastVertices) {
 TEST(BridgesTest, StopAtTheLongest) {
   for (uint32_t seed = 0; seed < 10; ++seed) {
     std::mt19937 random(seed);
-    const TriangleMesh mesh =
-        Cloud(40, random, [&] { return random() * 0x1p-32; });
+    const TriangleMesh mesh = Cloud(
+        40, random, [&] { return random() * 0x1p-32; },
+        [&] { return random() * 0x1p-38; });
     Bridges expected = SpanningBridges(mesh, kAnyLength);
     const size_t all = expected.size();
     constexpr double kLongest = 0.08;
@@ -105,15 +123,33 @@ TEST(BridgesTest, StopAtTheLongest) {
 }
 
 TEST(BridgesTest, EveryVertexOfANearZoneHasOne) {
-  // Two grids, one edge of each half a hundredth from the other's.
-  TriangleMesh mesh = Apart(Grid(8, 6), Grid(8, 6));
+  // Two grids, an edge of each half a square from one of the other.
+  TriangleMesh mesh = Apart(Grid(24, 18), Grid(24, 18));
   const uint32_t n = mesh.NumVertices() / 2;
-  for (uint32_t v = n; v < 2 * n; ++v) mesh.positions(v, 0) -= 0.9;
+  for (uint32_t v = n; v < 2 * n; ++v) mesh.positions(v, 0) -= 0.5;
   for (const auto& [u, v] : FindBridges(mesh)) {
-    EXPECT_EQ(mesh.positions(u, 0), 8);
-    EXPECT_EQ(v, u + 7);
+    EXPECT_EQ(mesh.positions(u, 0), 24);
+    EXPECT_EQ(mesh.positions(v, 0), 24.5);
+    EXPECT_EQ(mesh.positions(v, 1), mesh.positions(u, 1));
   }
-  EXPECT_EQ(FindBridges(mesh).size(), 7u);
+  EXPECT_EQ(FindBridges(mesh).size(), 19u);
+}
+
+// A post of twelve faces in the middle of a sheet of two: its corners are
+// nearest to points inside those.
+TEST(BridgesTest, SeeInsideCoarseFaces) {
+  TriangleMesh sheet = Scaled(Grid(1, 1), 10);
+  TriangleMesh post = CubesSurface({{0, 0, 0}}, 1);
+  post.positions.rowwise() += Eigen::RowVector3d(6, 3, 0.01);
+  const uint32_t n = sheet.NumVertices();
+  sheet.positions.conservativeResize(n + post.NumVertices(), 3);
+  sheet.positions.bottomRows(post.NumVertices()) = post.positions;
+  for (const auto& [a, b, c] : post.faces)
+    sheet.faces.push_back({n + a, n + b, n + c});
+  EXPECT_FALSE(SpanningBridges(sheet, BridgingDistance(sheet)).empty());
+  post.positions.rowwise() += Eigen::RowVector3d(0, 0, 1);
+  sheet.positions.bottomRows(post.NumVertices()) = post.positions;
+  EXPECT_TRUE(SpanningBridges(sheet, BridgingDistance(sheet)).empty());
 }
 
 TEST(BridgesTest, TheDistanceIsTheMeanEdgeWithinItsBounds) {
@@ -150,8 +186,9 @@ TEST(BridgesTest, LargeBodiesFarApartStayQuick) {
 
 TEST(BridgesTest, ManyBodiesStayQuick) {
   std::mt19937 random(1);
-  const TriangleMesh mesh =
-      Cloud(20'000, random, [&] { return random() * 0x1p-32; });
+  const TriangleMesh mesh = Cloud(
+      20'000, random, [&] { return random() * 0x1p-32; },
+      [&] { return random() * 0x1p-38; });
   const double start = CpuSeconds();
   EXPECT_EQ(SpanningBridges(mesh, kAnyLength).size(), 19'999u);
   EXPECT_LT(CpuSeconds() - start, Allowed(5));

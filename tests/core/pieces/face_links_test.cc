@@ -34,6 +34,19 @@ TEST(FaceLinksTest, GoBothWaysAndAreThereOnce) {
   EXPECT_THAT(LinksOf(links, 2), ElementsAre(0));
 }
 
+TEST(FaceLinksTest, ShellsThatTouchInAVertexAreLinked) {
+  // 0 and 1 share an edge, 2 touches both, 3 and 4 touch 2.
+  TriangleMesh mesh;
+  mesh.positions = Positions::Random(9, 3);
+  mesh.faces = {{0, 1, 2}, {1, 3, 2}, {2, 4, 5}, {4, 6, 7}, {4, 7, 8}};
+  const FaceLinks links(Adjacency(mesh), {});
+  EXPECT_THAT(LinksOf(links, 0), ElementsAre(2));
+  EXPECT_THAT(LinksOf(links, 1), IsEmpty());
+  EXPECT_THAT(LinksOf(links, 2), ElementsAre(0, 3));
+  EXPECT_THAT(LinksOf(links, 3), ElementsAre(2));
+  EXPECT_THAT(LinksOf(links, 4), IsEmpty());
+}
+
 TEST(FaceLinksTest, NoBridgesAreNoLinks) {
   EXPECT_TRUE(FaceLinks(Adjacency(Three()), {}).empty());
   EXPECT_THAT(LinksOf(FaceLinks(), 7), IsEmpty());

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <initializer_list>
 #include <map>
 #include <random>
 #include <set>
@@ -179,6 +181,14 @@ TEST_P(ShellsTest, AThousandSpecksChangeNothing) {
   for (size_t i = 0; i < run.levels.size(); ++i) {
     const auto& labels = run.levels[i].face_labels;
     EXPECT_EQ(FirstOf(labels, mesh.NumFaces()), clean.levels[i].face_labels);
+    // Nor do they pull joints out of the body.
+    const auto& joints = run.levels[i].skeleton.joints;
+    ASSERT_EQ(joints.size(), clean.levels[i].skeleton.joints.size());
+    for (size_t j = 0; j < joints.size(); ++j)
+      EXPECT_LE(
+          (joints[j].position - clean.levels[i].skeleton.joints[j].position)
+              .norm(),
+          1e-9 * Diagonal(mesh));
     // A speck is in one piece at every level.
     for (size_t f = mesh.NumFaces(); f < labels.size(); f += 4)
       for (size_t i = 1; i < 4; ++i) EXPECT_EQ(labels[f + i], labels[f]);
@@ -269,6 +279,75 @@ TEST_P(ShellsTest, MergeAcrossTheGaps) {
             run.mesh.report.components + 2u);
   ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
                   run.mesh.report.area, true, true);
+}
+
+// Twelve faces, from one corner to the other.
+TriangleMesh Box(const Eigen::RowVector3d& low,
+                 const Eigen::RowVector3d& high) {
+  TriangleMesh box;
+  box.positions.resize(8, 3);
+  for (int v = 0; v < 8; ++v)
+    for (int i = 0; i < 3; ++i)
+      box.positions(v, i) = v >> i & 1 ? high[i] : low[i];
+  for (const auto& [a, b, c, d] :
+       std::initializer_list<std::array<uint32_t, 4>>{{0, 1, 3, 2},
+                                                      {4, 6, 7, 5},
+                                                      {0, 4, 5, 1},
+                                                      {2, 3, 7, 6},
+                                                      {0, 2, 6, 4},
+                                                      {1, 5, 7, 3}}) {
+    box.faces.push_back({a, b, c});
+    box.faces.push_back({a, c, d});
+  }
+  return box;
+}
+
+// Where no vertex of a leg is near to one of the trunk.
+TEST(BodiesTest, LegsOfBoxesStandInTheirTrunk) {
+  TriangleMesh dog = Box({0, 0, 0}, {10, 3, 3});
+  for (double x : {1.0, 8.0})
+    for (double z : {0.3, 1.9})
+      dog = Together(dog, Box({x, -4, z}, {x + 0.8, 0.5, z + 0.8}));
+  const RecordingSink run = RunOn(dog, Levels(1, Method::kMerge));
+  EXPECT_EQ(run.mesh.report.bodies, 1u);
+  EXPECT_EQ(run.mesh.report.bridged_components, 5u);
+  ASSERT_EQ(run.levels[0].tree.SegmentsAtLevel(1).size(), 5u);
+  const auto& labels = run.levels[0].face_labels;
+  for (uint32_t f = 0; f < labels.size(); ++f)
+    EXPECT_EQ(labels[f], labels[f - f % 12]) << f;
+  // Every leg hangs on the trunk.
+  std::map<uint32_t, std::set<uint32_t>> beside;
+  for (const Joint& joint : run.levels[0].skeleton.joints)
+    if (joint.articulation)
+      for (uint32_t a : joint.segments)
+        for (uint32_t b : joint.segments)
+          if (a != b) beside[a].insert(b);
+  EXPECT_EQ(beside[labels[0]].size(), 4u);
+}
+
+// More of the area than the body, and no more than its hair.
+TEST(BodiesTest, HairFollowsTheBody) {
+  const TriangleMesh body = MakeCreature("humanoid").mesh;
+  const RecordingSink clean = RunOn(body, Levels(2, Method::kMerge));
+  const double step = 0.05 * Diagonal(body);
+  TriangleMesh mesh = body;
+  constexpr uint32_t kStrands = 1500;
+  mesh.positions.conservativeResize(body.NumVertices() + 8 * kStrands, 3);
+  uint32_t next = body.NumVertices();
+  for (uint32_t s = 0; s < kStrands; ++s) {
+    const Eigen::RowVector3d root = body.positions.row(s % body.NumVertices());
+    for (uint32_t i = 0; i < 8; ++i)
+      mesh.positions.row(next + i) =
+          root + step * Eigen::RowVector3d(0.1 + i % 2 * 0.1, 0.1 + i / 2, 0.2);
+    for (uint32_t i = 0; i < 6; ++i)
+      mesh.faces.push_back({next + i, next + i + 1, next + i + 2});
+    next += 8;
+  }
+  const RecordingSink run = RunOn(mesh, Levels(2, Method::kMerge));
+  EXPECT_EQ(run.mesh.report.attached_components, kStrands);
+  for (size_t i = 0; i < run.levels.size(); ++i)
+    EXPECT_EQ(FirstOf(run.levels[i].face_labels, body.NumFaces()),
+              clean.levels[i].face_labels);
 }
 
 TEST(BodiesTest, AnEyeFollowsTheHead) {
