@@ -43,22 +43,27 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
                                   const PullCallback& pull,
                                   const std::function<void(double)>& progress) {
   TreeBuilder builder(context, options, mesh_area);
-  for (uint32_t level = 0; level < kPieceLevels; ++level) {
+  for (uint32_t level = 0; level < kMostPieceLevels; ++level) {
+    const double least = level < kPieceLevels ? 0 : kLargePiece;
     const auto report = [&](double share) {
-      progress(kPiecesDone * (level + share) / kPieceLevels);
+      progress(kPiecesDone * std::min(1.0, (level + share) / kPieceLevels));
     };
-    MARROW_RETURN_IF_ERROR(pull(builder.LeastShare(), [&](double share) {
+    MARROW_RETURN_IF_ERROR(pull(builder.LeastShare(least), [&](double share) {
       report(kPairsShare * share);
     }));
-    MARROW_ASSIGN_OR_RETURN(const bool deeper,
-                            builder.Deepen(cancel, [&](double share) {
-                              report(kPairsShare + (1 - kPairsShare) * share);
-                            }));
+    MARROW_ASSIGN_OR_RETURN(
+        const bool deeper,
+        builder.Deepen(
+            cancel,
+            [&](double share) {
+              report(kPairsShare + (1 - kPairsShare) * share);
+            },
+            least, level < kPieceLevels ? 2 : kFewestOfLarge));
     if (!deeper) break;
   }
   const std::vector<uint32_t> leaves =
-      builder.tree().SegmentsAtLevel(kPieceLevels);
-  std::vector<uint32_t> piece = builder.tree().FaceSegments(kPieceLevels);
+      builder.tree().SegmentsAtLevel(kMostPieceLevels);
+  std::vector<uint32_t> piece = builder.tree().FaceSegments(kMostPieceLevels);
   for (uint32_t& p : piece)
     p = static_cast<uint32_t>(
         std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());

@@ -36,25 +36,34 @@ TreeBuilder::TreeBuilder(const SplitContext& context,
   tree_.nodes.push_back(MakeNode(context_, mesh_area_, std::move(whole)));
 }
 
-double TreeBuilder::LeastShare() const {
-  double least = mesh_area_;
+double TreeBuilder::LeastShare(double least) const {
+  double share = 1;
+  for (uint32_t id : DeepestOf(least))
+    if (tree_.nodes[id].area > 0 &&
+        tree_.nodes[id].faces.size() >= kMinRegionFaces)
+      share = std::min(share, tree_.nodes[id].area / mesh_area_);
+  return share;
+}
+
+std::vector<uint32_t> TreeBuilder::DeepestOf(double least) const {
+  std::vector<uint32_t> nodes;
   for (const SegmentNode& node : tree_.nodes)
-    if (node.level == depth_ && node.area > 0 &&
-        node.faces.size() >= kMinRegionFaces)
-      least = std::min(least, node.area);
-  return least / mesh_area_;
+    if (node.level == depth_ && node.area >= least * mesh_area_)
+      nodes.push_back(node.id);
+  return nodes;
 }
 
 absl::StatusOr<bool> TreeBuilder::Deepen(
-    const CancelToken& cancel, const std::function<void(double)>& progress) {
-  std::vector<uint32_t> leaves;
-  for (const SegmentNode& node : tree_.nodes)
-    if (node.level == depth_) leaves.push_back(node.id);
+    const CancelToken& cancel, const std::function<void(double)>& progress,
+    double least, size_t fewest) {
+  const std::vector<uint32_t> leaves = DeepestOf(least);
+  if (leaves.empty()) return false;
   std::vector<absl::StatusOr<RegionSplit>> splits =
       SplitAll(leaves, cancel, progress);
   bool any = false;
   for (size_t i = 0; i < leaves.size(); ++i) {
     MARROW_RETURN_IF_ERROR(splits[i].status());
+    if (splits[i]->pieces.size() < fewest) splits[i]->pieces.clear();
     any |= !splits[i]->pieces.empty();
     AddChildren(leaves[i], *std::move(splits[i]));
   }

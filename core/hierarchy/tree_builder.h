@@ -14,7 +14,7 @@
 
 namespace marrow {
 
-// Grows a tree from its root by splitting all leaves of the deepest level.
+// Grows a tree from its root by splitting the leaves of the deepest level.
 // Not thread safe. What the context refers to must outlive it.
 class TreeBuilder {
  public:
@@ -24,14 +24,16 @@ class TreeBuilder {
 
   // As a share of the mesh, the least area of those that Deepen() will try to
   // split: what pairs they take follows from it. 1 where there are none.
-  double LeastShare() const;
+  double LeastShare(double least = 0) const;
 
-  // Tries to split every node of the deepest level, two at a time where there
-  // are CPUs for it; whether any was. Calls `progress`, on the caller's thread,
-  // with the share of their area that has been tried.
-  // Errors: CANCELLED; the tree is then not to be used.
+  // Tries to split every node of the deepest level that has at least `least` of
+  // the mesh's area, two at a time where there are CPUs for it; whether any
+  // was. Those that would have fewer than `fewest` parts are left whole. Calls
+  // `progress`, on the caller's thread, with the share of their area that has
+  // been tried. Errors: CANCELLED; the tree is then not to be used.
   absl::StatusOr<bool> Deepen(const CancelToken& cancel,
-                              const std::function<void(double)>& progress);
+                              const std::function<void(double)>& progress,
+                              double least = 0, size_t fewest = 2);
 
   // Marks the leaves of the deepest level as stopped by the depth.
   void StopAtDepth();
@@ -46,6 +48,7 @@ class TreeBuilder {
       const std::vector<uint32_t>& leaves, const CancelToken& cancel,
       const std::function<void(double)>& progress) const;
   void AddChildren(uint32_t parent, RegionSplit split);
+  std::vector<uint32_t> DeepestOf(double least) const;
 
   SplitContext context_;
   SplitOptions options_;

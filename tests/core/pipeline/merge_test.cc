@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
+#include <set>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -45,6 +49,40 @@ TEST(MergeTest, FindsTheLimbsOfACross) {
   const RecordingSink run = RunOn(LimbCross(4), Merging());
   EXPECT_THAT(run.events, ::testing::IsSupersetOf({"mesh", "level 1", "tree"}));
   EXPECT_EQ(run.tree.SegmentsAtLevel(2).size(), 5u);
+}
+
+// More limbs than two splits part from each other: the first cut the trunk.
+TEST(MergeTest, FindsTheLegsOfACentipede) {
+  std::set<std::array<int, 3>> cubes;
+  constexpr int kPairs = 10, kReach = 4;
+  for (int x = 0; x <= 3 * kPairs; ++x)
+    for (int y : {0, 1})
+      for (int z : {0, 1}) cubes.insert({x, y, z});
+  for (int pair = 0; pair < kPairs; ++pair)
+    for (int i = 1; i <= kReach; ++i)
+      for (int z : {-i, 1 + i}) cubes.insert({1 + 3 * pair, 0, z});
+  const TriangleMesh mesh = CubesSurface(cubes, 2);
+  SegmentationOptions options = Merging();
+  options.eigen_pairs = 200;
+  const RecordingSink run = RunOn(mesh, options);
+  ASSERT_GE(run.levels.size(), 2u);
+  std::set<uint32_t> feet;
+  std::map<uint32_t, std::set<uint32_t>> of_foot;  // by leg
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Eigen::Vector3d p = mesh.Position(mesh.faces[f][0]);
+    const double scale = mesh.positions.col(0).maxCoeff() / (3 * kPairs + 1);
+    const double reach = std::max(-p.z() / scale, p.z() / scale - 2);
+    if (reach < kReach - 1) continue;
+    const auto leg = static_cast<uint32_t>(p.x() / scale / 3) * 2 + (p.z() > 0);
+    of_foot[leg].insert(run.levels[1].face_labels[f]);
+  }
+  for (const auto& [leg, segments] : of_foot) {
+    EXPECT_EQ(segments.size(), 1u) << leg;
+    feet.insert(*segments.begin());
+  }
+  EXPECT_EQ(of_foot.size(), 2u * kPairs);
+  // Two splits alone part 10 of them.
+  EXPECT_GE(feet.size(), 13u);
 }
 
 TEST(MergeTest, HasNoKappaOfTheCaller) {
