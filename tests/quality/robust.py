@@ -30,6 +30,7 @@ DISTURBANCES = {
     "half": (lambda surface: surfaces.decimate(surface, 0.5), 0),
     "quarter": (lambda surface: surfaces.decimate(surface, 0.25), 0),
     "subdivided": (surfaces.subdivide, 4),
+    "1 % missing": (lambda surface: surfaces.without_faces(surface, 0.01), 0),
 }
 
 # A file of several bodies in one folder names its body so.

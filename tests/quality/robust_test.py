@@ -26,7 +26,7 @@ class RobustTest(unittest.TestCase):
 
     def test_noise_and_triangles_hardly_change_the_cut(self):
         limits = {"noise 0.2": 0.03, "noise 1.0": 0.10, "half": 0.05,
-                  "subdivided": 0.05}
+                  "subdivided": 0.05, "1 % missing": 0.05}
         files = robust.sample_files(self.folder, FACES,
                                     ("quadruped", "octopus"))
         table = robust.disturbance_table(files, self.folder / "out",

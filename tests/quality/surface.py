@@ -94,6 +94,13 @@ def add_noise(surface, share, seed=1):
     return points + steps * share * mean_edge(surface) * normals, faces
 
 
+def without_faces(surface, share, seed=1):
+    """That share of the faces missing, at random."""
+    points, faces = surface
+    kept = numpy.random.default_rng(seed).random(len(faces)) >= share
+    return points, faces[kept]
+
+
 def subdivide(surface):
     """Every face divided into four at the middles of its edges: new face f is
     in old face f // 4."""

@@ -49,6 +49,14 @@ class SurfaceTest(unittest.TestCase):
         again, _ = surfaces.add_noise(self.surface, 0.5)
         numpy.testing.assert_array_equal(points, again)
 
+    def test_missing_faces_are_as_many_as_asked(self):
+        points, faces = surfaces.without_faces(self.surface, 0.1)
+        self.assertAlmostEqual(len(faces) / len(self.surface[1]), 0.9,
+                               delta=0.02)
+        self.assertIs(points, self.surface[0])
+        _, again = surfaces.without_faces(self.surface, 0.1)
+        numpy.testing.assert_array_equal(faces, again)
+
     def test_children_lie_in_their_face(self):
         fine = surfaces.subdivide(self.surface)
         areas = surfaces.face_areas(fine).reshape(-1, 4)
