@@ -98,9 +98,9 @@ Residuals are about 1e-4, with --strict at most 1e-8, which takes up to twice
 the work and is not kept in a server's cache. -o refines the pairs together, so
 that their last digits may depend on how many there are.
 
-Pieces that do not touch are connected where they are nearest, however weakly:
-there is one eigenvalue 0, and a small one for every further piece. For the
-spectrum of one piece, give it in a file of its own.)";
+Pieces that do not touch, specks too, are solved for on their own: each has an
+eigenvalue 0, and its eigenvectors are 0 on the others. Segmentation joins pieces
+that are near before it solves.)";
 
 constexpr char kHealthFooter[] =
     R"(Exit code 0 where the server takes calls, 1 where it answers that it does not,

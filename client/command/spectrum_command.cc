@@ -126,6 +126,16 @@ void Print(const SpectrumArguments& arguments, const Spectrum& spectrum) {
   }
 }
 
+// Specks are components too.
+void WarnOfZeros(const SpectrumArguments& arguments, const Spectrum& spectrum) {
+  if (arguments.service.quiet || spectrum.eigenvalues.back() > 0) return;
+  absl::FPrintF(stderr,
+                "marrow: %s: warning: all eigenvalues are 0: each of the "
+                "mesh's components has one; ask for more pairs, or leave "
+                "specks out\n",
+                arguments.file);
+}
+
 absl::Status ComputeSpectrum(const SpectrumArguments& arguments,
                              ServiceCall& call) {
   MARROW_ASSIGN_OR_RETURN(
@@ -149,6 +159,7 @@ absl::Status ComputeSpectrum(const SpectrumArguments& arguments,
         WriteEigenvectors(arguments.output, spectrum, input.order));
   }
   Print(arguments, spectrum);
+  WarnOfZeros(arguments, spectrum);
   return absl::OkStatus();
 }
 

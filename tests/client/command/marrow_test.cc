@@ -160,6 +160,26 @@ TEST(MarrowTest, SpectrumPrintsEigenvaluesAscending) {
   EXPECT_EQ(result["eigenvalues"].get<std::vector<double>>(), values);
 }
 
+TEST(MarrowTest, SpectrumOfManyPiecesIsWarnedOf) {
+  const TemporaryFolder folder;
+  std::string points, faces;
+  for (int i = 0; i < 4; ++i) {
+    const std::string x = std::to_string(5 * i);
+    points += x + " 0 0\n" + x + " 1 0\n" + x + " 0 1\n";
+    faces += "3 " + std::to_string(3 * i) + " " + std::to_string(3 * i + 1) +
+             " " + std::to_string(3 * i + 2) + "\n";
+  }
+  WriteFile(folder / "four.off", "OFF\n12 4 0\n" + points + faces);
+  const Finished few = Marrow({"spectrum", folder / "four.off", "-k", "3"});
+  EXPECT_EQ(few.out, "0\n0\n0\n0\n");
+  EXPECT_THAT(few.err, HasSubstr("all eigenvalues are 0"));
+  const Finished quiet =
+      Marrow({"spectrum", folder / "four.off", "-k", "3", "--quiet"});
+  EXPECT_EQ(quiet.err, "");
+  const Finished more = Marrow({"spectrum", folder / "four.off", "-k", "4"});
+  EXPECT_EQ(more.err, "");
+}
+
 // Five vertices in the file, of which the second has no face.
 TEST(MarrowTest, SpectrumWritesEigenvectorsInTheFilesOrder) {
   const TemporaryFolder folder;
