@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/boundaries/curvature.h"
@@ -12,6 +13,9 @@ namespace {
 // Between the least agreement of shapes, .28 where fans were divided, and the
 // greatest of noise, .16 on 800 vertices.
 constexpr double kNoisyAgreement = 0.22;
+// In edges: lower bumps are none. What is left of a flat sheet that was turned
+// is rounding, and no two roundings agree.
+constexpr double kLeastBump = 1e-3;
 
 // Forward to the mean of the neighbours, and a little more back, so that waves
 // much longer than an edge neither shrink nor grow.
@@ -34,6 +38,15 @@ Values NeighbourMeans(const Adjacency& adjacency, const Values& values) {
     ++count[b];
   }
   return sums.array().colwise() / count.array().max(1);
+}
+
+double MeanSquareEdge(const Adjacency& adjacency, const Positions& unit) {
+  double sum = 0;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+    const auto [a, b] = adjacency.EdgeVertices(e);
+    sum += (unit.row(a) - unit.row(b)).squaredNorm();
+  }
+  return sum / adjacency.NumEdges();
 }
 
 Positions VertexNormals(const TriangleMesh& mesh, const Positions& unit) {
@@ -66,8 +79,12 @@ double BumpAgreement(const TriangleMesh& mesh, const Adjacency& adjacency) {
   const Eigen::VectorXd heights =
       bumps.cwiseProduct(VertexNormals(mesh, unit)).rowwise().sum();
   const double square = heights.squaredNorm();
-  return square > 0 ? heights.dot(NeighbourMeans(adjacency, heights)) / square
-                    : 1;
+  const double least = std::pow(kLeastBump, 2) *
+                       MeanSquareEdge(adjacency, unit) *
+                       static_cast<double>(heights.size());
+  return square > least
+             ? heights.dot(NeighbourMeans(adjacency, heights)) / square
+             : 1;
 }
 
 TriangleMesh WithoutNoise(const TriangleMesh& mesh,

@@ -54,6 +54,9 @@ TEST(BumpAgreementTest, IsHighOnShapesAndLowWithNoise) {
 TEST(BumpAgreementTest, IsOneOnAPlane) {
   const TriangleMesh plane = Grid(5, 4);
   EXPECT_EQ(BumpAgreement(plane, Adjacency(plane)), 1);
+  // Where its bumps are rounding.
+  const TriangleMesh turned = Rotated(plane, {1, 2, 3}, 1);
+  EXPECT_EQ(BumpAgreement(turned, Adjacency(turned)), 1);
 }
 
 TEST(BumpAgreementTest, NeitherScaleNorTurnMatters) {
