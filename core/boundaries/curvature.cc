@@ -33,7 +33,9 @@ Positions UnitExtentPositions(const TriangleMesh& mesh) {
   return (mesh.positions.rowwise() - low) / extent;
 }
 
-double AreaOf(const TriangleMesh& mesh, const Positions& positions) {
+}  // namespace
+
+double AreaAt(const TriangleMesh& mesh, const Positions& positions) {
   double area = 0;
   for (const auto& [a, b, c] : mesh.faces) {
     const Eigen::Vector3d u = (positions.row(b) - positions.row(a)).transpose();
@@ -43,11 +45,9 @@ double AreaOf(const TriangleMesh& mesh, const Positions& positions) {
   return area;
 }
 
-}  // namespace
-
 Positions UnitAreaPositions(const TriangleMesh& mesh) {
   const Positions unit = UnitExtentPositions(mesh);
-  return unit / std::sqrt(AreaOf(mesh, unit));
+  return unit / std::sqrt(AreaAt(mesh, unit));
 }
 
 std::vector<double> AngleDefects(const TriangleMesh& mesh,
@@ -62,7 +62,7 @@ std::vector<double> AngleDefects(const TriangleMesh& mesh,
     for (int i = 0; i < 3; ++i)
       subtract(face[i], face[(i + 1) % 3], face[(i + 2) % 3]);
   const Holes holes =
-      SmallHoles(adjacency, unit, kSmallHole * std::sqrt(AreaOf(mesh, unit)));
+      SmallHoles(adjacency, unit, kSmallHole * std::sqrt(AreaAt(mesh, unit)));
   for (const auto& [vertex, angle] : holes.corners) defects[vertex] -= angle;
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
     if (adjacency.EdgeFaces(e).size() != 2 && !holes.has_edge[e])

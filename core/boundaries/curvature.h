@@ -13,6 +13,9 @@
 
 namespace marrow {
 
+// At these positions instead of the mesh's own, in their units.
+double AreaAt(const TriangleMesh& mesh, const Positions& positions);
+
 // The positions moved and scaled so that the mesh has area 1. All lengths of
 // this folder are in that unit. REQUIRES: a face of positive area.
 Positions UnitAreaPositions(const TriangleMesh& mesh);

@@ -62,15 +62,6 @@ Positions VertexNormals(const TriangleMesh& mesh, const Positions& unit) {
   return normals.rowwise().normalized();
 }
 
-double AreaOf(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.faces) {
-    const Eigen::Vector3d u = mesh.Position(b) - mesh.Position(a);
-    area += 0.5 * u.cross(mesh.Position(c) - mesh.Position(a)).norm();
-  }
-  return area;
-}
-
 }  // namespace
 
 double BumpAgreement(const TriangleMesh& mesh, const Adjacency& adjacency) {
@@ -95,7 +86,10 @@ TriangleMesh WithoutNoise(const TriangleMesh& mesh,
     for (double weight : {kForward, -kBack})
       calm.positions +=
           weight * (NeighbourMeans(adjacency, calm.positions) - calm.positions);
-  return AreaOf(calm) > kLeastArea * AreaOf(mesh) ? calm : mesh;
+  return AreaAt(mesh, calm.positions) >
+                 kLeastArea * AreaAt(mesh, mesh.positions)
+             ? calm
+             : mesh;
 }
 
 }  // namespace marrow

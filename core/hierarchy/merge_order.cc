@@ -54,8 +54,8 @@ void Merge(const PieceGraph::Pair& pair, PieceGraph& graph,
     strengths.Measure(std::minmax(a, other));
 }
 
-// Shells that touch in a vertex, and have no boundary: the smallest goes with
-// the largest.
+// Shells that nothing joins, not even a link: the smallest goes with the
+// largest.
 void MergeShells(PieceGraph& graph, BoundaryMeter& meter, double end,
                  double salience, MergeOrder& order) {
   std::vector<uint32_t> shells = graph.Groups();

@@ -28,7 +28,7 @@ struct PieceMerge {
 };
 
 // Invariants: every merge joins two groups; salience never falls. Pieces that
-// share no edge, directly or through others, merge last.
+// share no edge and no link, directly or through others, merge last.
 struct MergeOrder {
   uint32_t num_pieces = 0;
   std::vector<PieceMerge> merges;

@@ -22,8 +22,9 @@ class TreeBuilder {
   TreeBuilder(const SplitContext& context, const SplitOptions& options,
               double mesh_area);
 
-  // As a share of the mesh, the least area of those that Deepen() will try to
-  // split: what pairs they take follows from it. 1 where there are none.
+  // As a share of the mesh, the least area of those that Deepen() with the same
+  // `least` will try to split: what pairs they take follows from it. 1 where
+  // there are none.
   double LeastShare(double least = 0) const;
 
   // Tries to split every node of the deepest level that has at least `least` of

@@ -76,15 +76,4 @@ void Adjacency::BuildEdges(const TriangleMesh& mesh) {
   edge_offsets_.push_back(static_cast<uint32_t>(edge_faces_.size()));
 }
 
-std::vector<uint32_t> RimVertices(const Adjacency& adjacency) {
-  std::vector<bool> on_rim(adjacency.NumVertices(), false);
-  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
-    if (adjacency.IsBoundaryEdge(e))
-      for (uint32_t v : adjacency.EdgeVertices(e)) on_rim[v] = true;
-  std::vector<uint32_t> rim;
-  for (uint32_t v = 0; v < on_rim.size(); ++v)
-    if (on_rim[v]) rim.push_back(v);
-  return rim;
-}
-
 }  // namespace marrow

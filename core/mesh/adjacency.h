@@ -68,9 +68,6 @@ class Adjacency {
   std::vector<std::array<uint32_t, 3>> face_edges_;
 };
 
-// Vertices at edges of one face, ascending.
-std::vector<uint32_t> RimVertices(const Adjacency& adjacency);
-
 }  // namespace marrow
 
 #endif  // MARROW_CORE_MESH_ADJACENCY_H_

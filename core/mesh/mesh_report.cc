@@ -11,6 +11,7 @@
 #include "core/mesh/adjacency.h"
 #include "core/mesh/components.h"
 #include "core/mesh/orientation.h"
+#include "core/mesh/rims.h"
 
 namespace marrow {
 namespace {
@@ -102,19 +103,13 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
 }
 
 void CountEdges(const Adjacency& adjacency, MeshReport& report) {
-  DisjointSets loops(adjacency.NumVertices());
-  std::vector<uint32_t> rims;
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
     if (adjacency.EdgeFaces(e).size() >= 3) ++report.nonmanifold_edges;
-    if (!adjacency.IsBoundaryEdge(e)) continue;
-    ++report.boundary_edges;
-    const auto [v, w] = adjacency.EdgeVertices(e);
-    loops.Union(v, w);
-    rims.push_back(v);
+    if (adjacency.IsBoundaryEdge(e)) ++report.boundary_edges;
   }
-  for (uint32_t& v : rims) v = loops.Find(v);
-  std::sort(rims.begin(), rims.end());
-  report.boundary_loops = std::unique(rims.begin(), rims.end()) - rims.begin();
+  const std::vector<uint32_t> rim_of_vertex = RimOfVertices(adjacency);
+  for (uint32_t v : RimVertices(adjacency))
+    if (rim_of_vertex[v] == v) ++report.boundary_loops;
 }
 
 uint32_t CornerOf(const TriangleMesh& mesh, uint32_t f, uint32_t v) {

@@ -157,6 +157,15 @@ class HoleFinder {
 
 }  // namespace
 
+std::vector<uint32_t> RimVertices(const Adjacency& adjacency) {
+  std::vector<uint32_t> vertices;
+  for (uint32_t e : EdgesOfRims(adjacency))
+    for (uint32_t v : adjacency.EdgeVertices(e)) vertices.push_back(v);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
 std::vector<uint32_t> RimOfVertices(const Adjacency& adjacency) {
   DisjointSets rims(adjacency.NumVertices());
   for (uint32_t e : EdgesOfRims(adjacency)) {

@@ -10,6 +10,9 @@
 
 namespace marrow {
 
+// Vertices at edges of one face, ascending.
+std::vector<uint32_t> RimVertices(const Adjacency& adjacency);
+
 // A rim is a set of edges of one face each that shared vertices connect; rims
 // that touch are one. For each vertex the least of its rim; itself where it is
 // on none.

@@ -7,6 +7,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/components.h"
+#include "core/mesh/rims.h"
 #include "core/mesh/unit_box.h"
 #include "core/operators/body_tree.h"
 

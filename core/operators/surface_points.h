@@ -10,12 +10,12 @@
 
 namespace marrow {
 
-// Points inside coarse faces, on whose corners alone one could not tell that a
+// Points on coarse faces, by whose corners alone one could not tell that a
 // leg of twelve faces stands in a trunk of twelve.
 struct FacePoints {
   Positions places;              // a row a point
   std::vector<uint32_t> face;    // of each
-  std::vector<uint32_t> corner;  // vertex of the face that is nearest by far
+  std::vector<uint32_t> corner;  // the vertex that it counts for
 };
 
 // Of every face with an edge of more than twice `near`, on a grid no coarser

@@ -14,11 +14,11 @@ namespace marrow {
 // A label in several connected pieces keeps the one of most area (ties: the
 // one with the least face); each other takes the label with which it shares the
 // longest boundary, counted in edges and links, where there is one. So every
-// label is in one piece afterwards where the mesh is.
+// label is in one piece afterwards where the mesh is; but pieces of more than
+// `most` of the area of their label's largest stay where they are.
 //
 // `links` are pairs of faces that count as neighbours. Labels are less than
-// `num_labels`. Pieces of more than `most` of the area of their label's largest
-// stay where they are. Deterministic.
+// `num_labels`. Deterministic.
 void JoinStrayPieces(const Adjacency& adjacency,
                      const std::vector<double>& face_areas,
                      std::span<const std::array<uint32_t, 2>> links,

@@ -233,7 +233,8 @@ class Certifier {
       if (!(products.cwiseAbs().maxCoeff() <= most))
         return WithReason(
             absl::InternalError("so many eigenvalues are equal that their "
-                                "vectors cannot be told apart"),
+                                "vectors cannot be told apart; ask for "
+                                "fewer pairs"),
             kReasonSolverNotConverged);
     }
     return absl::OkStatus();

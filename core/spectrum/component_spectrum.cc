@@ -126,6 +126,8 @@ class ComponentsSolver {
             component.Bound() > last * (1 + kCountableGap))
           continue;
         all = false;
+        if (component.asked == component.NumVertices() - 1)
+          return absl::InternalError("a component's pairs end early");
         MARROW_RETURN_IF_ERROR(
             Ask(component, 2 * component.asked, [](double) {}));
       }

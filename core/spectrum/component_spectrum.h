@@ -18,7 +18,8 @@ using SpectrumSolver = std::function<absl::StatusOr<CertifiedSpectrum>(
     const CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel,
     const ProgressCallback& progress)>;
 
-// The operator of a mesh in several components has no entry between them: its
+// The operator of a mesh in several components has no entry between them, but
+// for the bridges that BuildLaplacian() adds and that are left out here: its
 // pairs are those of the components, in the scale of the whole, with 0
 // elsewhere, and as many zeros as there are components. So each component is
 // solved by `solve` on its own, for as many pairs as the count turns out to
@@ -28,8 +29,8 @@ using SpectrumSolver = std::function<absl::StatusOr<CertifiedSpectrum>(
 // components' least vertices.
 //
 // Where the mesh is one component, or has one without area, that is `solve`
-// itself. Deterministic.
-// Errors: those of `solve`.
+// itself. Deterministic. Errors: those of `solve`; INTERNAL where it does not
+// give all pairs of a component that is asked for all.
 absl::StatusOr<CertifiedSpectrum> SolveByComponents(
     const CanonicalMesh& mesh, uint32_t count, const SpectrumSolver& solve,
     const CancelToken& cancel, const ProgressCallback& progress);
