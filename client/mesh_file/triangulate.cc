@@ -6,14 +6,16 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <limits>
+#include <set>
 #include <span>
 
 namespace marrow {
 namespace {
 
-// Clipping takes quadratic time or worse; a larger polygon is cut as a fan.
-constexpr size_t kMaxClippedCorners = 1000;
+constexpr size_t kNone = std::numeric_limits<size_t>::max();
 
 using Point2 = Eigen::Vector2d;
 
@@ -69,45 +71,165 @@ bool FanIsGood(const std::vector<Point2>& points) {
   return true;
 }
 
-// Whether the corner at place i of the ring may be cut off.
-bool IsEar(const std::vector<Point2>& points, const std::vector<size_t>& ring,
-           size_t i) {
-  const size_t n = ring.size();
-  const Point2& a = points[ring[(i + n - 1) % n]];
-  const Point2& b = points[ring[i]];
-  const Point2& c = points[ring[(i + 1) % n]];
-  if (!(Turn(a, b, c) > 0)) return false;
-  for (const size_t other : ring) {
-    if (Contains(a, b, c, points[other])) return false;
-  }
-  return true;
-}
+struct Box {
+  Point2 low = Point2::Constant(std::numeric_limits<double>::infinity());
+  Point2 high = -low;
 
-// The first ear after place `from`; where there is none (the polygon is flat or
-// crosses itself), that place.
-size_t FindEar(const std::vector<Point2>& points,
-               const std::vector<size_t>& ring, size_t from) {
-  for (size_t k = 0; k < ring.size(); ++k) {
-    const size_t i = (from + k) % ring.size();
-    if (IsEar(points, ring, i)) return i;
+  // In this order of arguments a NaN changes nothing.
+  void Add(const Point2& from, const Point2& to) {
+    for (int axis = 0; axis < 2; ++axis) {
+      low[axis] = std::min(low[axis], from[axis]);
+      high[axis] = std::max(high[axis], to[axis]);
+    }
   }
-  return from % ring.size();
-}
+  bool Meets(const Box& other) const {
+    return (low.array() <= other.high.array()).all() &&
+           (other.low.array() <= high.array()).all();
+  }
+  // Whether all of it turns right of ab. Rounding is monotone, so no point for
+  // which Turn() is not negative is missed.
+  bool IsRightOf(const Point2& a, const Point2& b) const {
+    const Point2 leftmost(b.y() > a.y() ? low.x() : high.x(),
+                          b.x() > a.x() ? high.y() : low.y());
+    return Turn(a, b, leftmost) < 0;
+  }
+};
 
-void ClipEars(std::span<const uint32_t> corners,
-              const std::vector<Point2>& points,
-              std::vector<std::array<uint32_t, 3>>* triangles) {
-  std::vector<size_t> ring(corners.size());
-  for (size_t i = 0; i < ring.size(); ++i) ring[i] = i;
-  size_t ear = 1;
-  while (ring.size() > 2) {
-    const size_t n = ring.size();
-    ear = n == 3 ? 1 : FindEar(points, ring, ear);
-    triangles->push_back({corners[ring[(ear + n - 1) % n]], corners[ring[ear]],
-                          corners[ring[(ear + 1) % n]]});
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
+// The corners that are left, in a binary tree of boxes over their order in the
+// polygon: what lies close together there mostly does in the plane.
+class CornerTree {
+ public:
+  explicit CornerTree(const std::vector<Point2>& points)
+      : points_(points),
+        num_leaves_(std::bit_ceil(points.size())),
+        boxes_(2 * num_leaves_) {
+    for (size_t i = 0; i < points.size(); ++i) {
+      boxes_[num_leaves_ + i].Add(points[i], points[i]);
+    }
+    for (size_t node = num_leaves_ - 1; node > 0; --node) Enclose(node);
   }
-}
+
+  void Remove(size_t i) {
+    size_t node = num_leaves_ + i;
+    boxes_[node] = Box();
+    while ((node /= 2) > 0) Enclose(node);
+  }
+
+  // The first corner in the triangle abc; kNone where there is none.
+  size_t FindIn(const Point2& a, const Point2& b, const Point2& c) const {
+    Box box;
+    for (const Point2& corner : {a, b, c}) box.Add(corner, corner);
+    return FindIn(a, b, c, box, 1);
+  }
+
+ private:
+  void Enclose(size_t node) {
+    boxes_[node] = boxes_[2 * node];
+    boxes_[node].Add(boxes_[2 * node + 1].low, boxes_[2 * node + 1].high);
+  }
+
+  size_t FindIn(const Point2& a, const Point2& b, const Point2& c,
+                const Box& box, size_t node) const {
+    const Box& here = boxes_[node];
+    if (!here.Meets(box) || here.IsRightOf(a, b) || here.IsRightOf(b, c) ||
+        here.IsRightOf(c, a)) {
+      return kNone;
+    }
+    if (node >= num_leaves_) {
+      const size_t i = node - num_leaves_;
+      return Contains(a, b, c, points_[i]) ? i : kNone;
+    }
+    const size_t found = FindIn(a, b, c, box, 2 * node);
+    return found != kNone ? found : FindIn(a, b, c, box, 2 * node + 1);
+  }
+
+  const std::vector<Point2>& points_;
+  const size_t num_leaves_;
+  std::vector<Box> boxes_;  // 1 is the root, the children of k are 2k and 2k+1
+};
+
+// A corner that is found to be no ear is looked at again only when a neighbour
+// of it, or the corner that was in its way, is gone.
+class EarClipper {
+ public:
+  EarClipper(std::span<const uint32_t> corners,
+             const std::vector<Point2>& points,
+             std::vector<std::array<uint32_t, 3>>* triangles)
+      : corners_(corners),
+        points_(points),
+        triangles_(*triangles),
+        tree_(points),
+        before_(corners.size()),
+        after_(corners.size()),
+        blocked_(corners.size()) {
+    const size_t n = corners.size();
+    for (size_t i = 0; i < n; ++i) {
+      before_[i] = (i + n - 1) % n;
+      after_[i] = (i + 1) % n;
+      unknown_.insert(unknown_.end(), i);
+    }
+  }
+
+  void Clip() {
+    size_t at = 1;
+    for (size_t left = corners_.size(); left > 3; --left) {
+      const size_t ear = FindEar(at);
+      Emit(ear);
+      at = after_[ear];
+      Remove(ear);
+    }
+    Emit(after_[std::min({before_[at], at, after_[at]})]);
+  }
+
+ private:
+  // The first ear from corner `from` on; where there is none (the polygon is
+  // flat or crosses itself), that corner.
+  size_t FindEar(size_t from) {
+    while (!unknown_.empty()) {
+      auto it = unknown_.lower_bound(from);
+      if (it == unknown_.end()) it = unknown_.begin();
+      if (IsEar(*it)) return *it;
+      unknown_.erase(it);
+    }
+    return from;
+  }
+
+  bool IsEar(size_t i) {
+    const Point2& a = points_[before_[i]];
+    const Point2& b = points_[i];
+    const Point2& c = points_[after_[i]];
+    if (!(Turn(a, b, c) > 0)) return false;
+    const size_t blocker = tree_.FindIn(a, b, c);
+    if (blocker != kNone) blocked_[blocker].push_back(i);
+    return blocker == kNone;
+  }
+
+  void Emit(size_t i) {
+    triangles_.push_back(
+        {corners_[before_[i]], corners_[i], corners_[after_[i]]});
+  }
+
+  void Remove(size_t i) {
+    tree_.Remove(i);
+    unknown_.erase(i);
+    unknown_.insert({before_[i], after_[i]});
+    after_[before_[i]] = after_[i];
+    before_[after_[i]] = before_[i];
+    after_[i] = kNone;
+    for (const size_t other : blocked_[i]) {
+      if (after_[other] != kNone) unknown_.insert(other);
+    }
+  }
+
+  const std::span<const uint32_t> corners_;
+  const std::vector<Point2>& points_;
+  std::vector<std::array<uint32_t, 3>>& triangles_;
+  CornerTree tree_;
+  std::vector<size_t> before_;                // of those that are left
+  std::vector<size_t> after_;                 // kNone for one that is gone
+  std::set<size_t> unknown_;                  // those that may be ears
+  std::vector<std::vector<size_t>> blocked_;  // by each corner
+};
 
 void CutFan(std::span<const uint32_t> corners,
             std::vector<std::array<uint32_t, 3>>* triangles) {
@@ -131,10 +253,9 @@ void Triangulate(const PolygonMesh& mesh, size_t f,
                                  return mesh.positions[a] < mesh.positions[b];
                                }),
               corners.end());
-  if (corners.size() > kMaxClippedCorners) return CutFan(corners, triangles);
   const std::vector<Point2> points = Flatten(mesh, corners);
   if (FanIsGood(points)) return CutFan(corners, triangles);
-  ClipEars(corners, points, triangles);
+  EarClipper(corners, points, triangles).Clip();
 }
 
 }  // namespace marrow

@@ -17,7 +17,8 @@ namespace marrow {
 // A polygon is cut as a fan from its first corner where that leaves no triangle
 // turned over, otherwise by clipping ears, so that a planar polygon that does
 // not cross itself is covered once. Repeated corners give triangles with
-// repeated corners; nothing is dropped. Deterministic.
+// repeated corners; nothing is dropped. Deterministic. Thousands of corners
+// take milliseconds.
 void Triangulate(const PolygonMesh& mesh, size_t f,
                  std::vector<std::array<uint32_t, 3>>* triangles);
 

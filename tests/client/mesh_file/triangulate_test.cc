@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -93,14 +94,40 @@ TEST(TriangulateTest, CoversAStar) {
   ExpectCovered(star);
 }
 
-TEST(TriangulateTest, CoversAComb) {
-  Points comb = {{0, 0}, {13, 0}};
-  for (int tooth = 6; tooth > 0; --tooth) {
+// Two arms of a spiral, one from inside out and one back.
+Points Spiral(int turns, int corners) {
+  Points spiral;
+  for (int i = 0; i < corners; ++i) {
+    const bool is_back = i >= corners / 2;
+    const double angle =
+        2 * M_PI * turns * (is_back ? corners - 1 - i : i) / (corners / 2 - 1);
+    const double radius = 1 + angle + (is_back ? 2 : 0);
+    spiral.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  if (SignedArea(spiral) < 0) std::reverse(spiral.begin(), spiral.end());
+  return spiral;
+}
+
+Points Comb(int teeth) {
+  Points comb = {{0, 0}, {2.0 * teeth + 1, 0}};
+  for (int tooth = teeth; tooth > 0; --tooth) {
     comb.push_back({2.0 * tooth, 5});
     comb.push_back({2.0 * tooth - 1, 1});
   }
   comb.push_back({0, 5});
-  ExpectCovered(comb);
+  return comb;
+}
+
+TEST(TriangulateTest, CoversAComb) { ExpectCovered(Comb(6)); }
+
+// In a test's time only where not every ear is compared with every corner.
+TEST(TriangulateTest, CoversPolygonsOfManyCorners) {
+  for (const Points& polygon :
+       {Spiral(5, 1020), Spiral(10, 20000), Comb(1000), Comb(10000)}) {
+    const PolygonMesh mesh = Place(polygon, 0);
+    ExpectCoveredOnce(polygon, mesh, 0, false);
+    ExpectCoveredOnce(polygon, mesh, 7, true);
+  }
 }
 
 // Each side of the polygon is a side of exactly one triangle, the same way.
