@@ -26,6 +26,7 @@ class OffReader {
     MARROW_RETURN_IF_ERROR(ReadHeader());
     MARROW_RETURN_IF_ERROR(ReadVertices());
     MARROW_RETURN_IF_ERROR(ReadFaces());
+    MARROW_RETURN_IF_ERROR(CheckEnd());
     precision_.Apply(&mesh_);
     return std::move(mesh_);
   }
@@ -36,6 +37,8 @@ class OffReader {
   absl::Status ReadVertices();
   absl::Status ReadFaces();
   absl::Status ReadFace(int64_t face);
+  absl::Status CheckEnd();
+  bool IsFaceLine();
   absl::Status ReadCount(std::string_view token, const char* what,
                          int64_t* count);
 
@@ -155,6 +158,33 @@ absl::Status OffReader::ReadFace(int64_t face) {
   mesh_.face_offsets.push_back(
       static_cast<uint32_t>(mesh_.face_vertices.size()));
   return absl::OkStatus();
+}
+
+// Whether this line begins as one of a triangle or a larger polygon does.
+bool OffReader::IsFaceLine() {
+  int64_t corners = 0;
+  if (!ParseInt64(scanner_.NextToken(), &corners) || corners < 3) return false;
+  for (int64_t i = 0; i < corners; ++i) {
+    int64_t vertex = 0;
+    if (!ParseInt64(scanner_.NextToken(), &vertex)) return false;
+    if (vertex < 0 || vertex >= num_vertices_) return false;
+  }
+  return true;
+}
+
+// Edges and anything else may follow the faces, but no more faces.
+absl::Status OffReader::CheckEnd() {
+  int64_t found = num_faces_;
+  size_t line = 0;  // of the first too many
+  while (scanner_.NextLine()) {
+    if (!IsFaceLine()) continue;
+    if (++found == num_faces_ + 1) line = scanner_.line();
+  }
+  if (found == num_faces_) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      scanner_.path(), ": line ", line, ": the number of faces is ", num_faces_,
+      ", but the file has ", found,
+      "; mend the number in the header, or take the lines away"));
 }
 
 }  // namespace

@@ -205,7 +205,8 @@ class PlyReader {
   absl::StatusOr<uint64_t> ReadListLength(const Element& element, uint64_t row,
                                           const Property& property,
                                           ValueReader& reader);
-  absl::Status CheckCorners(uint64_t num_vertices) const;
+  absl::Status CheckCorners(size_t first_face) const;
+  absl::Status CheckEnd(const Element& last, ValueReader& reader);
   absl::Status RowError(const Element& element, uint64_t row,
                         const ValueReader& reader,
                         const std::string& message) const {
@@ -436,17 +437,37 @@ absl::Status PlyReader::ReadElement(const Element& element,
   return absl::OkStatus();
 }
 
-absl::Status PlyReader::CheckCorners(uint64_t num_vertices) const {
-  for (size_t f = 0; f < mesh_.NumFaces(); ++f) {
+absl::Status PlyReader::CheckCorners(size_t first_face) const {
+  for (size_t f = first_face; f < mesh_.NumFaces(); ++f) {
     for (const uint32_t vertex : mesh_.Face(f)) {
-      if (vertex < num_vertices) continue;
+      if (vertex < mesh_.NumVertices()) continue;
       return absl::InvalidArgumentError(
           absl::StrCat(path_, ": face ", f, ": vertex index ", vertex,
-                       " is out of range (the file has ", num_vertices,
+                       " is out of range (the file has ", mesh_.NumVertices(),
                        " vertices, counted from 0)"));
     }
   }
   return absl::OkStatus();
+}
+
+// Padding may follow the last element, but no more triangles or polygons.
+absl::Status PlyReader::CheckEnd(const Element& last, ValueReader& reader) {
+  if (last.name != "face") return absl::OkStatus();
+  const size_t faces = mesh_.NumFaces();
+  const size_t end = mesh_.face_vertices.size();
+  size_t found = faces;
+  while (reader.NextRow() && ReadRow(last, found, reader).ok() &&
+         mesh_.Face(faces).size() >= 3 && CheckCorners(faces).ok()) {
+    ++found;
+    mesh_.face_offsets.resize(faces + 1);
+    mesh_.face_vertices.resize(end);
+  }
+  mesh_.face_offsets.resize(faces + 1);
+  mesh_.face_vertices.resize(end);
+  if (found == faces) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      path_, ": the number of faces is ", faces, ", but the file has ", found,
+      "; export it anew, or mend the number in the header"));
 }
 
 absl::StatusOr<PolygonMesh> PlyReader::Read() {
@@ -464,7 +485,8 @@ absl::StatusOr<PolygonMesh> PlyReader::Read() {
     }
     MARROW_RETURN_IF_ERROR(ReadElement(element, reader));
   }
-  MARROW_RETURN_IF_ERROR(CheckCorners(mesh_.NumVertices()));
+  MARROW_RETURN_IF_ERROR(CheckCorners(0));
+  MARROW_RETURN_IF_ERROR(CheckEnd(header_.elements.back(), reader));
   return std::move(mesh_);
 }
 

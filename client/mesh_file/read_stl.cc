@@ -65,6 +65,14 @@ absl::StatusOr<PolygonMesh> ReadBinary(const std::string& path,
                      declared, " bytes, but the file has ", bytes.size(),
                      "; it is cut off or not an STL"));
   }
+  // A few bytes more are padding.
+  const uint64_t held = (bytes.size() - kHeaderBytes) / kTriangleBytes;
+  if (held > triangles) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ": byte 80: the number of triangles is ", triangles,
+                     ", but the file has room for ", held,
+                     "; export it anew, or mend the count"));
+  }
   if (3 * triangles > 0xFFFFFFFEu) {
     return absl::InvalidArgumentError(
         absl::StrCat(path, ": has too many triangles: ", triangles));

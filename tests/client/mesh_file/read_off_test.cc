@@ -64,8 +64,18 @@ TEST(ReadOffTest, ReadsNumbersThatAreNotFinite) {
   EXPECT_LT(mesh.positions[2][1], 0);
 }
 
+TEST(ReadOffTest, LeavesOutWhatFollowsTheFaces) {
+  const std::string text = "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const char* rest : {"\n \n", "# 3 0 1 2\n", "0 1\n1 2\n2 0\n",
+                           "2 0 1\n2 1 2\n", "3 0 1 9\n", "end\n"}) {
+    EXPECT_EQ(ParseOrFail("m.off", text + rest).NumFaces(), 1u) << rest;
+  }
+}
+
 TEST(ReadOffTest, ErrorsNameTheLineAndTheElement) {
   const std::string head = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+  ExpectRefused("m.off", head + "3 0 1 2\n\n3 0 2 1 255 0 0\n3 2 1 0",
+                {"line 8", "faces is 1, but", "has 3", "header"});
   ExpectRefused("m.off", head + "3 0 1 99\n",
                 {"line 6", "vertex index 99 is out of range", "3 vertices"});
   ExpectRefused("m.off", head + "3 0 1 -1\n", {"line 6", "index -1"});

@@ -87,6 +87,28 @@ TEST(ReadPlyTest, ReadsHeadersWithCarriageReturns) {
   EXPECT_EQ(ParseOrFail("m.ply", header + bytes.substr(data)).NumFaces(), 2u);
 }
 
+TEST(ReadPlyTest, LeavesOutPadding) {
+  for (const std::string& rest :
+       {std::string("\n"), std::string(3, '\0'), std::string(90, '\0')}) {
+    EXPECT_EQ(ParseOrFail("m.ply", BinaryPly(false) + rest).NumFaces(), 2u);
+  }
+  const std::string text = std::string(kHeader) + "0 0 0\n1 0 0\n0 1 0\n";
+  for (const char* rest : {"\n \n", "end\n", "2 0 1\n", "3 0 1 9\n"}) {
+    const PolygonMesh mesh = ParseOrFail("m.ply", text + "3 2 1 0\n" + rest);
+    EXPECT_THAT(Faces(mesh), ElementsAre(ElementsAre(2, 1, 0))) << rest;
+  }
+}
+
+TEST(ReadPlyTest, MoreFacesThanTheHeaderSaysAreAnError) {
+  ExpectRefused(
+      "m.ply",
+      std::string(kHeader) + "0 0 0\n1 0 0\n0 1 0\n3 2 1 0\n3 0 1 2\n3 1 0 2\n",
+      {"faces is 1, but", "has 3", "header"});
+  std::string binary = BinaryPly(false);
+  binary.replace(binary.find("face 2"), 6, "face 1");
+  ExpectRefused("m.ply", binary, {"faces is 1, but", "has 2"});
+}
+
 TEST(ReadPlyTest, ErrorsNameTheElement) {
   const std::string head = kHeader;
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";

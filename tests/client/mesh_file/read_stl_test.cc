@@ -54,7 +54,16 @@ TEST(ReadStlTest, ReadsBinaryWhateverItsHeaderSays) {
   }
 }
 
+TEST(ReadStlTest, LeavesOutPadding) {
+  for (const size_t padding : {1, 49}) {
+    const std::string bytes = BinaryStl(2, 2, "") + std::string(padding, '\0');
+    EXPECT_EQ(ParseOrFail("m.stl", bytes).NumFaces(), 2u);
+  }
+}
+
 TEST(ReadStlTest, ErrorsSayWhatIsWrong) {
+  ExpectRefused("m.stl", BinaryStl(1, 3, ""),
+                {"byte 80", "triangles is 1, but", "room for 3", "export"});
   ExpectRefused("m.stl", BinaryStl(0xFFFFFFFF, 2, ""),
                 {"byte 80", "4294967295 triangles", "184", "cut off"});
   ExpectRefused("m.stl", "short", {"5 bytes", "'solid'"});
