@@ -19,7 +19,8 @@ namespace {
 constexpr char kAbout[] =
     "Splits meshes of creatures into a tree of parts, with a skeleton a "
     "level.\n\n"
-    "Meshes are OFF, OBJ, PLY, STL, glTF, GLB or Draco files.";
+    "Meshes are OFF, OBJ, PLY, STL, glTF, GLB or Draco files; - is standard "
+    "input, by how it begins.";
 
 constexpr char kFooter[] = R"(Examples:
   marrow sample humanoid --pose wave -o me.off    a creature to try
@@ -53,7 +54,8 @@ constexpr char kSegmentFooter[] =
   STEM.parts.obj      with --parts: each segment of the cut an object
 Labels are the ids of the tree's nodes in STEM.json, and, of segments of the
 cut that are no nodes, those in its "cut". What an earlier run left
-of these for STEM is replaced as a whole.
+of these for STEM is replaced as a whole. The STEM of standard input (-) is
+stdin.
 
 With --json each event is a line {"event": ..., "file": ...} on standard
 output: accepted, progress, mesh_report, level, skeleton, warning, cut, then
@@ -127,6 +129,12 @@ std::string CheckSeconds(const std::string& text) {
   return absl::SimpleAtod(text, &value) && value > 0 && std::isfinite(value)
              ? ""
              : absl::StrCat("'", text, "' is no number of seconds above 0");
+}
+
+std::string CheckFolder(const std::string& text) {
+  return text != "-" ? ""
+                     : "results are several files, which standard output "
+                       "cannot hold: name a folder (./- for one named -)";
 }
 
 void AddServer(CLI::App& app, std::string& server, const char* otherwise) {
@@ -218,6 +226,7 @@ void AddOutput(CLI::App& app, std::string& folder) {
   app.add_option("-o,--output", folder,
                  "Folder of the results, made where it is missing; without "
                  "it, the current one")
+      ->check(CheckFolder)
       ->type_name("DIR");
 }
 

@@ -136,7 +136,8 @@ absl::Status WriteAll(const fs::path& staging, const fs::path& folder,
 }  // namespace
 
 std::string StemOf(const std::string& path) {
-  return fs::path(path).stem().string();
+  const fs::path name = fs::path(path).filename();
+  return name == "-" ? "stdin" : name.stem().string();
 }
 
 absl::Status CheckStems(const std::vector<std::string>& inputs) {

@@ -10,7 +10,8 @@
 
 namespace marrow::client {
 
-// The name of an input without folder and last extension.
+// The name of an input without folder and last extension; "stdin" for "-",
+// which is standard input.
 std::string StemOf(const std::string& path);
 
 // INVALID_ARGUMENT where two inputs would write one file: they have one STEM,

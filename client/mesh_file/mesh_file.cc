@@ -131,7 +131,8 @@ MeshFormat DetectMeshFormat(const std::string& path, std::string_view bytes) {
 }
 
 absl::StatusOr<std::string> ReadFileBytes(const std::string& path) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                             : open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return ReadError(path, errno);
   absl::StatusOr<std::string> bytes = ReadAll(path, fd);
   close(fd);

@@ -17,8 +17,9 @@ enum class MeshFormat { kUnknown, kOff, kObj, kPly, kStl, kGltf, kDraco };
 // `bytes` begin.
 MeshFormat DetectMeshFormat(const std::string& path, std::string_view bytes);
 
-// The whole file. Errors name the path: NOT_FOUND, PERMISSION_DENIED,
-// INVALID_ARGUMENT (a folder, an empty file), RESOURCE_EXHAUSTED (over 4 GiB).
+// The whole file; of "-", standard input to its end. Errors name the path:
+// NOT_FOUND, PERMISSION_DENIED, INVALID_ARGUMENT (a folder, an empty file),
+// RESOURCE_EXHAUSTED (over 4 GiB).
 absl::StatusOr<std::string> ReadFileBytes(const std::string& path);
 
 // Reads an OFF, OBJ, PLY, STL, glTF or GLB file.

@@ -107,6 +107,29 @@ TEST(MarrowTest, InspectReportsOnAMesh) {
   EXPECT_EQ(result["geometry_digest"].get<std::string>().size(), 64u);
 }
 
+TEST(MarrowTest, ADashIsStandardInputWhateverTheFolderHolds) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const auto run = [&](const std::string& arguments) {
+    return RunProgram({"/bin/sh", "-c",
+                       "cd " + folder.path() + " && mkdir -p ./- && " +
+                           ProgramPath("marrow") + " " + arguments});
+  };
+  const Finished inspect = run("inspect - --json < t.off");
+  EXPECT_EQ(inspect.code, 0) << inspect.err;
+  EXPECT_EQ(json::parse(inspect.out)["report"]["faces"], 4);
+  EXPECT_EQ(run("segment - -o out < t.off").code, 0);
+  EXPECT_THAT(ListFolder(folder / "out"), ::testing::Contains("stdin.seg"));
+}
+
+TEST(MarrowTest, ADashIsNoFolderForResults) {
+  for (const char* command : {"segment", "cut"}) {
+    const Finished run = Marrow({command, "x.off", "-o", "-"});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr("name a folder"));
+  }
+}
+
 TEST(MarrowTest, InspectTellsWhatWillBeDone) {
   const TemporaryFolder folder;
   // Two triangles turned against each other, with a point to spare.

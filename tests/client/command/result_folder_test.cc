@@ -21,6 +21,8 @@ TEST(ResultFolderTest, TheStemIsTheNameWithoutFolderAndExtension) {
   EXPECT_EQ(StemOf("a/b.c/homer.off"), "homer");
   EXPECT_EQ(StemOf("x.tar.obj"), "x.tar");
   EXPECT_EQ(StemOf("plain"), "plain");
+  EXPECT_EQ(StemOf("-"), "stdin");
+  EXPECT_EQ(StemOf("-.off"), "-");
 }
 
 TEST(ResultFolderTest, KnowsItsOwnFilesFromOthers) {

@@ -1,5 +1,8 @@
 #include "client/mesh_file/mesh_file.h"
 
+#include <unistd.h>
+
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -66,6 +69,16 @@ TEST_F(ReadMeshFileTest, ReadsBytesUnchanged) {
   const absl::StatusOr<std::string> read = ReadFileBytes(Write("x", bytes));
   ASSERT_TRUE(read.ok());
   EXPECT_EQ(*read, bytes);
+}
+
+TEST_F(ReadMeshFileTest, ADashIsStandardInput) {
+  const int kept = dup(STDIN_FILENO);
+  ASSERT_NE(std::freopen(Write("m", kOff).c_str(), "r", stdin), nullptr);
+  const absl::StatusOr<std::string> read = ReadFileBytes("-");
+  dup2(kept, STDIN_FILENO);
+  close(kept);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(*read, kOff);
 }
 
 TEST_F(ReadMeshFileTest, ErrorsNameThePath) {
