@@ -98,6 +98,13 @@ MeshFormat FormatOfContent(const std::string& path, std::string_view bytes) {
   return MeshFormat::kUnknown;
 }
 
+absl::Status UnknownFormatError(const std::string& path) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      path,
+      ": is of no format that can be read; use .off, .obj, .ply, .stl, "
+      ".gltf, .glb or .drc"));
+}
+
 absl::StatusOr<PolygonMesh> ParseAs(MeshFormat format, const std::string& path,
                                     std::string_view bytes) {
   switch (format) {
@@ -117,10 +124,7 @@ absl::StatusOr<PolygonMesh> ParseAs(MeshFormat format, const std::string& path,
     case MeshFormat::kUnknown:
       break;
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      path,
-      ": is of no format that can be read; use .off, .obj, .ply, .stl, "
-      ".gltf, .glb or .drc"));
+  return UnknownFormatError(path);
 }
 
 }  // namespace
@@ -149,6 +153,11 @@ absl::StatusOr<PolygonMesh> ParseMesh(const std::string& path,
     MARROW_ASSIGN_OR_RETURN(
         PolygonMesh mesh, ParseAs(DetectMeshFormat(path, bytes), path, bytes));
     if (mesh.NumFaces() == 0) {
+      // How it begins, which other formats may too, is all there was to go by.
+      if (std::filesystem::path(path).has_extension() &&
+          FormatOfExtension(path) == MeshFormat::kUnknown) {
+        return UnknownFormatError(path);
+      }
       return absl::InvalidArgumentError(absl::StrCat(
           path,
           ": has no faces; Marrow needs a surface, so save the mesh with "

@@ -36,6 +36,8 @@ TEST(DetectMeshFormatTest, GoesByExtensionThenByContent) {
 TEST(ParseMeshTest, FindsTheFormatOfAnUnknownExtension) {
   EXPECT_EQ(ParseOrFail("mesh.txt", kOff).NumFaces(), 1u);
   ExpectRefused("mesh.png", "\x89PNG", {".off", ".drc"});
+  ExpectRefused("mesh.fbx", "v 0 0 0\n", {"no format", ".off", ".drc"});
+  ExpectRefused("mesh", "v 0 0 0\n", {"no faces"});
   ExpectRefused("mesh.drc", "DRACO", {"Draco"});
 }
 
