@@ -113,8 +113,9 @@ std::vector<v1::Finding> FindingsAbout(const MeshReport& report) {
     findings.push_back(MakeFinding(
         "SEVERAL_BODIES", report.bodies,
         absl::StrCat("the mesh is ", report.bodies,
-                     " bodies far from each other; each is a segment of level "
-                     "1 and is segmented at a scale of its own")));
+                     " bodies far from each other; each is segmented on its "
+                     "own, at a scale of its own, and no segment of level 1 or "
+                     "deeper has faces of two")));
   }
   if (DistanceInExtents(report) > kFarAway) {
     findings.push_back(MakeFinding(

@@ -77,7 +77,9 @@ INSTANTIATE_TEST_SUITE_P(
                            [](MeshReport& r) { r.bridged_components = 12; }},
                       Flaw{"COMPONENTS_ATTACHED", "1 component is too small",
                            [](MeshReport& r) { r.attached_components = 1; }},
-                      Flaw{"SEVERAL_BODIES", "the mesh is 3 bodies",
+                      Flaw{"SEVERAL_BODIES",
+                           "the mesh is 3 bodies far from each other; each is "
+                           "segmented on its own",
                            [](MeshReport& r) { r.bodies = 3; }},
                       Flaw{"DEGENERATE_FACES", "3 faces have two corners",
                            [](MeshReport& r) { r.degenerate_faces = 3; }},
