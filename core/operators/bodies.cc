@@ -11,6 +11,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/submesh.h"
 #include "core/operators/laplacian.h"
+#include "core/operators/scenery.h"
 #include "core/operators/seams.h"
 #include "core/operators/surface_points.h"
 
@@ -81,6 +82,27 @@ std::vector<Part> Split(std::vector<Part>& from, size_t first) {
   return rest;
 }
 
+// The components, with their shares in the area of what is not scenery, each
+// kind largest first.
+void PartsOf(const TriangleMesh& mesh, std::vector<Part>& parts,
+             std::vector<Part>& scenery) {
+  const std::vector<double> areas = FaceAreaShares(mesh);
+  Groups components = Components(mesh);
+  const std::vector<bool> is_scenery = FindScenery(mesh, components);
+  for (size_t i = 0; i < components.size(); ++i) {
+    Part& part = (is_scenery[i] ? scenery : parts).emplace_back();
+    part.share = AreaOf(components[i], areas);
+    part.faces = std::move(components[i]);
+  }
+  LargestFirst(parts);
+  LargestFirst(scenery);
+  double sum = 0;
+  for (const Part& part : parts) sum += part.share;
+  if (sum > 0)
+    for (Part& part : parts) part.share /= sum;
+  for (Part& part : scenery) part.share = kSceneryShare;
+}
+
 // Rule 1. REQUIRES: largest first. The number of components of weight.
 size_t CountOfWeight(const std::vector<Part>& parts) {
   auto count_from = [&](double share) {
@@ -88,7 +110,8 @@ size_t CountOfWeight(const std::vector<Part>& parts) {
     while (count < parts.size() && parts[count].share >= share) ++count;
     return count;
   };
-  const size_t heavy = count_from(kWeight);
+  const size_t heavy =
+      count_from(std::min(kWeight, kBodyShare * parts[0].share));
   double sum = 0;
   for (size_t i = 0; i < heavy; ++i) sum += parts[i].share;
   return sum >= kMainShare ? heavy : count_from(kLightWeight);
@@ -102,11 +125,28 @@ std::vector<uint32_t> AllFacesOf(const std::vector<Part>& parts) {
   return faces;
 }
 
+double BoxDiagonal(const TriangleMesh& mesh,
+                   const std::vector<uint32_t>& faces) {
+  Eigen::RowVector3d low = mesh.positions.row(mesh.faces[faces[0]][0]);
+  Eigen::RowVector3d high = low;
+  for (uint32_t f : faces) {
+    for (uint32_t v : mesh.faces[f]) {
+      low = low.cwiseMin(mesh.positions.row(v));
+      high = high.cwiseMax(mesh.positions.row(v));
+    }
+  }
+  return (high - low).stableNorm();
+}
+
 // Rule 2: joins the parts that bridges within the distance connect.
 std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
                            double& distance) {
   const Submesh main = ExtractFaces(mesh, AllFacesOf(parts));
   distance = BridgingDistance(main.canonical.mesh);
+  double widest = 0;
+  for (const Part& part : parts)
+    widest = std::max(widest, BoxDiagonal(mesh, part.faces));
+  distance = std::min(distance, kBridgedGap * widest);
   std::vector<uint32_t> part_of_vertex(mesh.NumVertices(), kNoIndex);
   for (uint32_t p = 0; p < parts.size(); ++p)
     for (uint32_t f : parts[p].faces)
@@ -285,7 +325,7 @@ Body WholeBody(const CanonicalMesh& mesh) {
   return body;
 }
 
-// Rule 5, noted in the report.
+// Rule 6, noted in the report.
 void CoarsenLarge(const CancelToken& cancel, Bodies& bodies,
                   MeshReport& report) {
   report.coarse_vertices = 0;
@@ -316,7 +356,7 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
   }
 }
 
-// Rules 1 to 4.
+// Rules 1 to 5.
 Bodies SortOut(CanonicalMesh& mesh) {
   Bodies result;
   result.anchors = Iota(mesh.mesh.NumFaces());
@@ -326,20 +366,15 @@ Bodies SortOut(CanonicalMesh& mesh) {
     result.bodies.push_back(WholeBody(mesh));
     return result;
   }
-  const std::vector<double> areas = FaceAreaShares(mesh.mesh);
-  std::vector<Part> parts;
-  for (auto& faces : Components(mesh.mesh)) {
-    Part& part = parts.emplace_back();
-    part.share = AreaOf(faces, areas);
-    part.faces = std::move(faces);
-  }
-  LargestFirst(parts);
+  std::vector<Part> parts, scenery;
+  PartsOf(mesh.mesh, parts, scenery);
   std::vector<Part> attached = Split(parts, CountOfWeight(parts));
   double distance = 0;
   parts = JoinNear(mesh.mesh, std::move(parts), distance);
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
+  for (Part& part : scenery) parts.push_back(std::move(part));
   Note(parts, attached, distance, mesh.report);
 
   if (parts.size() == 1 && attached.empty() && parts[0].components == 1) {
@@ -395,7 +430,7 @@ std::vector<uint32_t> ToWholeVertices(const Body& body,
 }
 
 uint32_t PairsOfBody(const Body& body, uint32_t count) {
-  constexpr uint32_t kLeast = 30;
+  constexpr uint32_t kLeast = 60;
   // Not one more for what rounding adds to the share.
   const double share = std::ceil(body.share * count - 1e-6);
   return std::min(count, std::max(kLeast, static_cast<uint32_t>(share)));

@@ -2,22 +2,27 @@
 // their own, and which follow another: the one place that decides it.
 //
 // A component is what shared vertices connect, after welding. Its size is its
-// share of the mesh's area. In order:
-//  1. Of weight is a component of at least kWeight. Where those hold less than
-//     kMainShare of the area (a creature of scales or plates, not one with a
-//     body under its hair), of at least kLightWeight; the largest always is.
+// share of the area of what is not scenery (core/operators/scenery.h): however
+// large the ground that a creature stands on, it makes no difference to the
+// rules. In order:
+//  1. Of weight is a component of at least kWeight, or kBodyShare of the
+//     largest. Where those hold less than kMainShare of the area (a creature of
+//     scales or plates, not one with a body under its hair), of at least
+//     kLightWeight; the largest always is.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
-//     weight are one body, through any number of others. A body has one
-//     operator, one spectrum and one tree: it is segmented as if its shells had
-//     grown together. Their rims are sewn where they face each other
-//     (core/operators/seams.h), and what stays apart is bridged.
+//     weight, nor than kBridgedGap of the widest (a row of creatures is wide,
+//     and no creature for that), are one body, through any number of others. A
+//     body has one operator, one spectrum and one tree: it is segmented as if
+//     its shells had grown together. Their rims are sewn where they face each
+//     other (core/operators/seams.h), and what stays apart is bridged.
 //  3. A body of at least kBodyShare of the largest is a segment of its own, a
 //     child of the root, if there are several; of the kMaxBodies largest.
 //  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
 //     a body that is too small for rule 3, has at every level the label of the
 //     face nearest to it by points (surface_points.h). It enters no operator,
 //     so a mesh with specks is segmented exactly as without.
-//  5. A body of more than kLargeBody vertices is computed on a coarse mesh of
+//  5. Scenery is a body each, that counts for kSceneryShare of the others.
+//  6. A body of more than kLargeBody vertices is computed on a coarse mesh of
 //     about kCoarseVertices (core/mesh/coarse_mesh.h): its parts are far larger
 //     than what that leaves out. Not where half of the vertices cannot go.
 #ifndef MARROW_CORE_OPERATORS_BODIES_H_
@@ -37,8 +42,10 @@ namespace marrow {
 inline constexpr double kWeight = 1e-2;
 inline constexpr double kLightWeight = 1e-4;
 inline constexpr double kMainShare = 0.05;
+inline constexpr double kBridgedGap = 0.1;
 inline constexpr double kBodyShare = 0.05;
-inline constexpr uint32_t kMaxBodies = 32;
+inline constexpr uint32_t kMaxBodies = 256;
+inline constexpr double kSceneryShare = 0.05;
 inline constexpr uint32_t kLargeBody = 80'000;
 inline constexpr uint32_t kCoarseVertices = 40'000;
 
@@ -63,7 +70,8 @@ struct Body {
 
 // Immutable once built.
 struct Bodies {
-  std::vector<Body> bodies;  // by falling area, then least face; not empty
+  std::vector<Body>
+      bodies;  // by falling area, then least face, scenery last; not empty
   // Face of the whole mesh -> itself where a body has it, else the face of a
   // body whose labels it takes.
   std::vector<uint32_t> anchors;

@@ -62,7 +62,7 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
           FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
                     body.coarse == nullptr ? body.bridges
                                            : FindBridges(body.Computed().mesh)),
-          body.share} {}
+          body.share / prepared.bodies.bodies[0].share} {}
 
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,

@@ -148,15 +148,22 @@ TEST(BodiesTest, ManyLightComponentsOfWeightAreBridged) {
 
 TEST(BodiesTest, ThereAreNeverManyBodies) {
   std::vector<TriangleMesh> debris;
-  for (int i = 0; i < 100; ++i) {
-    debris.push_back(MovedTo(Icosphere(0), 10 * (i % 5)));
-    debris.back().positions.col(1).array() += 10 * (i / 5 % 5);
-    debris.back().positions.col(2).array() += 10 * (i / 25);
+  for (int i = 0; i < 500; ++i) {
+    debris.push_back(MovedTo(Icosphere(0), 10 * (i % 10)));
+    debris.back().positions.col(1).array() += 10 * (i / 10 % 10);
+    debris.back().positions.col(2).array() += 10 * (i / 100);
   }
   CanonicalMesh mesh = CanonicalOf(Together(debris));
   const Bodies bodies = FindBodies(mesh);
   EXPECT_EQ(bodies.bodies.size(), kMaxBodies);
-  EXPECT_EQ(mesh.report.attached_components, 100u - kMaxBodies);
+  EXPECT_EQ(mesh.report.attached_components, 500u - kMaxBodies);
+}
+
+TEST(BodiesTest, ACrowdOfEqualsHasNoOneLeftOut) {
+  std::vector<TriangleMesh> crowd;
+  for (int i = 0; i < 100; ++i) crowd.push_back(MovedTo(Icosphere(1), 10 * i));
+  CanonicalMesh mesh = CanonicalOf(Rotated(Together(crowd), {1, 2, 3}, 1));
+  EXPECT_EQ(FindBodies(mesh).bodies.size(), 100u);
 }
 
 TEST(BodiesTest, AnyScaleGivesTheSame) {
