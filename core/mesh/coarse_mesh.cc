@@ -9,6 +9,7 @@
 
 #include "absl/container/inlined_vector.h"
 #include "core/mesh/mesh_report.h"
+#include "core/mesh/place_factors.h"
 
 namespace marrow {
 namespace {
@@ -21,6 +22,11 @@ constexpr double kShareARound = 0.5;
 // Rounds that take away less are not worth their while, nor are more of them.
 constexpr double kLeastGain = 0.03;
 constexpr int kMostRounds = 50;
+// The two ends of a shortest edge always tie, and on a subdivided mesh many
+// edges do. If numbers or rounding broke ties, a mesh that is turned or scaled
+// would have another coarse mesh; so squared lengths are multiplied by numbers
+// that go with the place, and differ by far more than a file's floats round.
+constexpr double kSpread = 0.3;
 
 // What may become of a face.
 struct ShapeLimits {
@@ -32,8 +38,12 @@ struct ShapeLimits {
   bool operator==(const ShapeLimits&) const = default;
 };
 // The second where the first leaves too many vertices: on surfaces all of
-// corners and holes.
-constexpr ShapeLimits kShapeLimits[] = {{0.5, 0.2}, {-0.5, 0.02}};
+// corners and holes. None is a number that the faces of a lattice have.
+constexpr ShapeLimits kShapeLimits[] = {{0.51, 0.19}, {-0.49, 0.019}};
+
+// A face that is bad already becomes worse below that share of its quality:
+// those of a stretched lattice are equally bad but for rounding.
+constexpr double kWorse = 0.99;
 
 bool Has(const Triangle& face, uint32_t v) {
   return face[0] == v || face[1] == v || face[2] == v;
@@ -64,6 +74,7 @@ class Coarsener {
         gone_(mesh.NumVertices(), false),
         stuck_(mesh.NumVertices(), false),
         locked_(mesh.NumVertices(), false),
+        factors_(PlaceFactors(mesh, kSpread)),
         heir_(mesh.NumFaces()),
         num_vertices_(mesh.NumVertices()) {
     std::iota(live_.begin(), live_.end(), 0u);
@@ -127,7 +138,7 @@ class Coarsener {
     return (mesh_.positions.row(a) - mesh_.positions.row(b)).squaredNorm();
   }
 
-  // The vertices with the shortest edges, by these, then by their numbers.
+  // The vertices with the shortest edges, by these.
   std::vector<uint32_t> ShortestFirst() const {
     std::vector<double> shortest(mesh_.NumVertices(),
                                  std::numeric_limits<double>::infinity());
@@ -141,7 +152,7 @@ class Coarsener {
     std::vector<std::pair<double, uint32_t>> order;
     order.reserve(num_vertices_);
     for (uint32_t v = 0; v < shortest.size(); ++v)
-      if (!gone_[v]) order.push_back({shortest[v], v});
+      if (!gone_[v]) order.push_back({factors_[v] * shortest[v], v});
     const auto middle =
         order.begin() + static_cast<size_t>(kShareARound * order.size());
     std::nth_element(order.begin(), middle, order.end());
@@ -175,7 +186,7 @@ class Coarsener {
     std::vector<std::pair<double, uint32_t>> near;
     for (uint32_t v : ends.empty() ? ring : ends)
       if (!locked_[v] && Star(v).size() <= kMostFaces)
-        near.push_back({SquaredLength(u, v), v});
+        near.push_back({factors_[v] * SquaredLength(u, v), v});
     std::sort(near.begin(), near.end());
     for (const auto& [length, v] : near) {
       if (!ShapesHold(u, v) || !LinkHolds(u, v, ring)) continue;
@@ -251,7 +262,7 @@ class Coarsener {
       if (norms > 0 && before.dot(after) < limits_.cosine * norms) return false;
       const double quality = Quality(after.norm(), v, a, b);
       if (quality < limits_.quality &&
-          quality < Quality(before.norm(), u, a, b))
+          quality < kWorse * Quality(before.norm(), u, a, b))
         return false;
     }
     return true;
@@ -320,6 +331,7 @@ class Coarsener {
   std::vector<bool> gone_;         // vertices
   std::vector<bool> stuck_;        // vertices that had nowhere to go
   std::vector<bool> locked_;       // a face at it changed in the last round
+  std::vector<double> factors_;    // of vertices, to costs
   std::vector<uint32_t> heir_;     // face -> whose patch it joined, or itself
   uint32_t num_vertices_;
   // Of the round.

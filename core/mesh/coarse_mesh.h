@@ -34,6 +34,9 @@ struct CoarseMesh {
 // edges, and two coarse faces that share an edge have patches that do: so what
 // is connected on the coarse mesh is connected on the fine one.
 //
+// A mesh that is moved, turned, mirrored or scaled has the same coarse mesh,
+// but for some vertices in a hundred where its positions were rounded to float.
+//
 // `mesh` is canonical. Once cancelled, it stops where it is: the result holds,
 // with more vertices. Deterministic; a round is linear in the mesh but for
 // sorting, however many faces a vertex has. Thread safe.

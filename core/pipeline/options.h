@@ -12,7 +12,7 @@
 namespace marrow {
 
 // Changes whenever equal requests may give other answers.
-inline constexpr char kAlgorithmRevision[] = "paper/6 merge/12";
+inline constexpr char kAlgorithmRevision[] = "paper/7 merge/13";
 
 enum class Method {
   kPaper,  // top-down: a level is a depth of the recursion

@@ -99,6 +99,66 @@ TEST(CoarsenTest, ReachesTheNumberAndKeepsTheShape) {
   EXPECT_LT(*std::max_element(patch.begin(), patch.end()), 10 * mean);
 }
 
+// A body and limbs of different lengths, without a symmetry; all faces are
+// equal but for where they are.
+TriangleMesh Lattice() {
+  return CubesSurface({{0, 0, 0},
+                       {1, 0, 0},
+                       {2, 0, 0},
+                       {3, 0, 0},
+                       {3, 1, 0},
+                       {3, 2, 0},
+                       {0, 0, 1}},
+                      24);
+}
+
+// Of each vertex of `mesh`, in its own order, whether a coarse one is left.
+std::vector<bool> LeftOf(const TriangleMesh& mesh, uint32_t num_vertices) {
+  const CanonicalMesh fine = CanonicalOf(mesh);
+  const CoarseMesh coarse = Coarsen(fine.mesh, num_vertices);
+  std::vector<bool> is_left(fine.mesh.NumVertices(), false);
+  for (uint32_t v : coarse.vertices) is_left[v] = true;
+  std::vector<bool> left;
+  for (uint32_t v : fine.point_map) left.push_back(is_left[v]);
+  return left;
+}
+
+// Expects the coarse mesh of the moved mesh to be the coarse mesh moved.
+void ExpectMovesWith(const TriangleMesh& mesh) {
+  constexpr uint32_t kLeft = 8'000;
+  TriangleMesh permuted = mesh, mirrored = mesh, moved = mesh;
+  permuted.positions.col(0).swap(permuted.positions.col(2));
+  mirrored.positions.col(0) *= -1;
+  moved.positions.rowwise() += Eigen::RowVector3d(1, -20, 0.3);
+  const TriangleMesh turned =
+      Rotated(Scaled(mesh, 0.01), Eigen::Vector3d(1, 2, -0.7), 1.2);
+  const std::vector<bool> left = LeftOf(mesh, kLeft);
+  const auto count_lost = [&](const TriangleMesh& other) {
+    const std::vector<bool> found = LeftOf(other, kLeft);
+    uint32_t lost = 0;
+    for (size_t v = 0; v < left.size(); ++v) lost += left[v] && !found[v];
+    return lost;
+  };
+  constexpr uint32_t kFew = kLeft / 2000;
+  EXPECT_LE(count_lost(permuted), kFew);
+  EXPECT_LE(count_lost(mirrored), kFew);
+  EXPECT_LE(count_lost(moved), kFew);
+  EXPECT_LE(count_lost(Scaled(mesh, 0.01)), kFew);
+  EXPECT_LE(count_lost(turned), kFew);
+  // To float: that makes a few edges change places, and what follows of that.
+  EXPECT_LE(count_lost(Rounded(turned)), kLeft / 100);
+}
+
+// Neither numbering, which follows the coordinates, nor rounding decides.
+TEST(CoarsenTest, MovesWithTheMesh) { ExpectMovesWith(Lattice()); }
+
+TEST(CoarsenTest, MovesWithAMeshOfEquallyBadFaces) {
+  TriangleMesh mesh = Lattice();
+  mesh.positions.col(0) *= 3;
+  mesh.positions.col(2) *= 8;
+  ExpectMovesWith(mesh);
+}
+
 TEST(CoarsenTest, LeavesAMeshThatIsSmallEnough) {
   const CanonicalMesh fine = CanonicalOf(LimbCross(3));
   const CoarseMesh coarse = Coarsen(fine.mesh, fine.mesh.NumVertices());
