@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/boundaries/curvature.h"
+#include "core/mesh/orientation.h"
 
 namespace marrow {
 namespace {
@@ -49,15 +50,20 @@ double MeanSquareEdge(const Adjacency& adjacency, const Positions& unit) {
   return sum / adjacency.NumEdges();
 }
 
-Positions VertexNormals(const TriangleMesh& mesh, const Positions& unit) {
+// Faces that are turned against the others of their part would cancel them.
+Positions VertexNormals(const TriangleMesh& mesh, const Adjacency& adjacency,
+                        const Positions& unit) {
+  const Sides sides = FindSides(mesh, adjacency);
   Positions normals = Positions::Zero(unit.rows(), 3);
-  for (const Triangle& face : mesh.faces) {
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Triangle& face = mesh.faces[f];
     const Eigen::Vector3d u =
         (unit.row(face[1]) - unit.row(face[0])).transpose();
     const Eigen::Vector3d v =
         (unit.row(face[2]) - unit.row(face[0])).transpose();
     const Eigen::RowVector3d normal = u.cross(v).transpose();
-    for (uint32_t corner : face) normals.row(corner) += normal;
+    for (uint32_t corner : face)
+      normals.row(corner) += sides.is_turned[f] ? -normal : normal;
   }
   return normals.rowwise().normalized();
 }
@@ -68,7 +74,7 @@ double BumpAgreement(const TriangleMesh& mesh, const Adjacency& adjacency) {
   const Positions unit = UnitAreaPositions(mesh);
   const Positions bumps = NeighbourMeans(adjacency, unit) - unit;
   const Eigen::VectorXd heights =
-      bumps.cwiseProduct(VertexNormals(mesh, unit)).rowwise().sum();
+      bumps.cwiseProduct(VertexNormals(mesh, adjacency, unit)).rowwise().sum();
   const double square = heights.squaredNorm();
   const double least = std::pow(kLeastBump, 2) *
                        MeanSquareEdge(adjacency, unit) *

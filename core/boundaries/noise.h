@@ -19,8 +19,9 @@ namespace marrow {
 // a third where flat faces were divided, -0.1 with noise of a fifth of the mean
 // edge and -0.2 with any more. 1 where bumps are below a thousandth of an edge.
 //
-// REQUIRES: a face of positive area. Deterministic, linear. Neither scale nor
-// place matters.
+// REQUIRES: a face of positive area. Deterministic, O(n log n). Neither scale
+// nor place matters, nor which way faces are turned: those of a part
+// (core/mesh/orientation.h) are taken to agree.
 double BumpAgreement(const TriangleMesh& mesh, const Adjacency& adjacency);
 
 // The mesh itself where the bumps agree as on a shape; else with its vertices

@@ -2,10 +2,10 @@
 // representative.
 #include "core/mesh/orientation.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace marrow {
 namespace {
@@ -46,7 +46,6 @@ class ParitySets {
   bool IsOneSided(uint32_t representative) const {
     return one_sided_[representative];
   }
-  uint32_t Size(uint32_t representative) const { return size_[representative]; }
 
  private:
   std::vector<uint32_t> parent_;
@@ -62,10 +61,7 @@ bool RunsAlong(const Triangle& face, uint32_t v, uint32_t w) {
   return false;
 }
 
-}  // namespace
-
-Orientation CheckOrientation(const TriangleMesh& mesh,
-                             const Adjacency& adjacency) {
+ParitySets JoinFaces(const TriangleMesh& mesh, const Adjacency& adjacency) {
   ParitySets sets(mesh.NumFaces());
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
     const auto faces = adjacency.EdgeFaces(e);
@@ -75,21 +71,85 @@ Orientation CheckOrientation(const TriangleMesh& mesh,
               RunsAlong(mesh.faces[faces[0]], v, w) ==
                   RunsAlong(mesh.faces[faces[1]], v, w));
   }
-  std::vector<uint32_t> turned(mesh.NumFaces(), 0);
+  return sets;
+}
+
+// `is_turned` is against the least face of the part; makes it that of the
+// fewer.
+void TurnTheFewer(Sides& sides) {
+  std::vector<int64_t> surplus(sides.NumParts(), 0);  // turned less not turned
+  for (size_t f = 0; f < sides.part.size(); ++f)
+    surplus[sides.part[f]] += sides.is_turned[f] ? 1 : -1;
+  for (size_t f = 0; f < sides.part.size(); ++f)
+    if (surplus[sides.part[f]] > 0) sides.is_turned[f] = !sides.is_turned[f];
+}
+
+// The mean corner of each part.
+std::vector<Eigen::Vector3d> Centers(const TriangleMesh& mesh,
+                                     const Sides& sides) {
+  std::vector<Eigen::Vector3d> centers(sides.NumParts(),
+                                       Eigen::Vector3d::Zero());
+  std::vector<double> corners(sides.NumParts(), 0);
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    const auto [representative, is_turned] = sets.Find(f);
-    turned[representative] += is_turned;
+    for (uint32_t v : mesh.faces[f]) centers[sides.part[f]] += mesh.Position(v);
+    corners[sides.part[f]] += 3;
   }
+  for (uint32_t i = 0; i < sides.NumParts(); ++i) centers[i] /= corners[i];
+  return centers;
+}
+
+}  // namespace
+
+Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency) {
+  const uint32_t n = mesh.NumFaces();
+  const ParitySets sets = JoinFaces(mesh, adjacency);
+  Sides sides{std::vector<uint32_t>(n), std::vector<bool>(n), {}};
+  std::vector<uint32_t> part(n, kNoIndex);  // by representative, as the next
+  std::vector<bool> least_is_turned(n);
+  for (uint32_t f = 0; f < n; ++f) {
+    const auto [set, is_turned] = sets.Find(f);
+    if (part[set] == kNoIndex) {
+      part[set] = sides.NumParts();
+      least_is_turned[set] = is_turned;
+      sides.is_one_sided.push_back(sets.IsOneSided(set));
+    }
+    sides.part[f] = part[set];
+    sides.is_turned[f] = is_turned != least_is_turned[set];
+  }
+  TurnTheFewer(sides);
+  return sides;
+}
+
+Orientation CheckOrientation(const TriangleMesh& mesh,
+                             const Adjacency& adjacency) {
+  const Sides sides = FindSides(mesh, adjacency);
   Orientation result;
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    if (sets.Find(f).first != f) continue;
-    if (sets.IsOneSided(f)) {
+    if (sides.is_one_sided[sides.part[f]]) {
       result.orientable = false;
     } else {
-      result.flipped_faces += std::min(turned[f], sets.Size(f) - turned[f]);
+      result.flipped_faces += sides.is_turned[f];
     }
   }
   return result;
+}
+
+std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides) {
+  const std::vector<Eigen::Vector3d> centers = Centers(mesh, sides);
+  // By part, once those that are turned are turned over.
+  std::vector<double> volumes(sides.NumParts(), 0);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const Eigen::Vector3d& center = centers[sides.part[f]];
+    const auto [a, b, c] = mesh.faces[f];
+    const double volume =
+        (mesh.Position(a) - center)
+            .dot((mesh.Position(b) - center).cross(mesh.Position(c) - center));
+    volumes[sides.part[f]] += sides.is_turned[f] ? -volume : volume;
+  }
+  std::vector<bool> inward(mesh.NumFaces());
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    inward[f] = sides.is_turned[f] != (volumes[sides.part[f]] < 0);
+  return inward;
 }
 
 }  // namespace marrow

@@ -68,6 +68,22 @@ TEST(BumpAgreementTest, NeitherScaleNorTurnMatters) {
               1e-9);
 }
 
+// Files have faces in either direction, and the kept one of two faces back to
+// back is that which sorts first.
+TEST(BumpAgreementTest, TurnedFacesDoNotMatter) {
+  for (const TriangleMesh& mesh :
+       {Icosphere(3), RoughBall(0.5), Apart(LimbCross(3), Disk(6))}) {
+    const Adjacency adjacency(mesh);
+    for (uint32_t step : {1u, 2u, 3u}) {
+      TriangleMesh flipped = mesh;
+      for (uint32_t f = 0; f < mesh.NumFaces(); f += step)
+        std::swap(flipped.faces[f][1], flipped.faces[f][2]);
+      EXPECT_NEAR(BumpAgreement(flipped, Adjacency(flipped)),
+                  BumpAgreement(mesh, adjacency), 1e-12);
+    }
+  }
+}
+
 TEST(WithoutNoiseTest, LeavesShapesAlone) {
   for (const TriangleMesh& mesh : {Icosphere(3), LimbCross(3), Grid(5, 4)})
     EXPECT_EQ(WithoutNoise(mesh, Adjacency(mesh)).positions, mesh.positions);

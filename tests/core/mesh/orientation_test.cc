@@ -1,6 +1,7 @@
 #include "core/mesh/orientation.h"
 
 #include <utility>
+#include <vector>
 
 #include "gtest/gtest.h"
 #include "tests/testing/shapes.h"
@@ -48,6 +49,46 @@ TEST(OrientationTest, AMoebiusStripHasNone) {
   Flip(both.faces.back());
   EXPECT_FALSE(Check(both).orientable);
   EXPECT_EQ(Check(both).flipped_faces, 1u);
+}
+
+void TurnOver(const std::vector<bool>& turned, TriangleMesh& mesh) {
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    if (turned[f]) Flip(mesh.faces[f]);
+}
+
+TEST(FindSidesTest, TurnsTheFewerOfEveryPart) {
+  TriangleMesh mesh = Apart(Icosphere(1), Icosphere(1));
+  for (uint32_t f = 0; f < 80; f += 3) Flip(mesh.faces[f]);
+  for (uint32_t f = 80; f < 160; ++f)
+    if (f % 3 != 0) Flip(mesh.faces[f]);
+  const Sides sides = FindSides(mesh, Adjacency(mesh));
+  ASSERT_EQ(sides.NumParts(), 2u);
+  for (uint32_t f = 0; f < 160; ++f) {
+    EXPECT_EQ(sides.part[f], f / 80);
+    EXPECT_EQ(sides.is_turned[f], f % 3 == 0);
+  }
+}
+
+TEST(FindSidesTest, OfEquallyManyTheLeastFaceStays) {
+  for (const uint32_t first : {0u, 1u}) {
+    TriangleMesh mesh = Icosphere(1);
+    for (uint32_t f = first; f < 80; f += 2) Flip(mesh.faces[f]);
+    const Sides sides = FindSides(mesh, Adjacency(mesh));
+    for (uint32_t f = 0; f < 80; ++f) EXPECT_EQ(sides.is_turned[f], f % 2 == 1);
+  }
+}
+
+TEST(FacesInwardTest, TurnsEveryPartOutwards) {
+  const TriangleMesh expected =
+      Apart(Icosphere(1), Apart(LimbCross(2), Torus(2, 0.5, 12, 8)));
+  TriangleMesh mesh = expected;
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
+    if (f % 7 < 4) Flip(mesh.faces[f]);
+  // The second time there is nothing to do.
+  for (int i = 0; i < 2; ++i) {
+    TurnOver(FacesInward(mesh, FindSides(mesh, Adjacency(mesh))), mesh);
+    EXPECT_EQ(mesh.faces, expected.faces);
+  }
 }
 
 // Nothing is asked of an edge where three faces meet.
