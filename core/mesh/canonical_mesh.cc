@@ -6,13 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
+#include "core/mesh/adjacency.h"
 #include "core/mesh/cracks.h"
+#include "core/mesh/orientation.h"
 
 namespace marrow {
 namespace {
@@ -83,15 +84,18 @@ Spots Weld(const Positions& points) {
   return spots;
 }
 
-// A face between spots that begins with the least.
+// A face between spots, ascending.
 struct FaceRecord {
   Triangle spots;
+  bool descends;  // the payload has it the other way round
   uint32_t decoded_face;
+};
 
-  std::array<uint32_t, 3> Set() const {
-    return {spots[0], std::min(spots[1], spots[2]),
-            std::max(spots[1], spots[2])};
-  }
+// In which directions the payload has a kept face: of both for twins that lie
+// back to back.
+struct Directions {
+  bool ascending = false;
+  bool descending = false;
 };
 
 bool IsDegenerate(const Triangle& t) {
@@ -103,49 +107,45 @@ Triangle OnSpots(const Triangle& face, const Spots& spots) {
           spots.of_point[face[2]]};
 }
 
-std::vector<FaceRecord> RotatedFaces(const DecodedMesh& decoded,
-                                     const Spots& spots) {
+std::vector<FaceRecord> SortedFaces(const DecodedMesh& decoded,
+                                    const Spots& spots) {
   std::vector<FaceRecord> records;
   records.reserve(decoded.faces.size());
   for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
     Triangle t = OnSpots(decoded.faces[f], spots);
     if (IsDegenerate(t)) continue;
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    records.push_back({t, f});
-  }
-  return records;
-}
-
-// Fills result.mesh.faces (still between spots) and the face_map of all but
-// degenerate faces.
-void KeepFaces(std::vector<FaceRecord> records, CanonicalMesh& result) {
-  // Twins side by side, the one to keep first.
-  std::sort(records.begin(), records.end(),
-            [](const FaceRecord& a, const FaceRecord& b) {
-              return std::tuple(a.Set(), a.spots) <
-                     std::tuple(b.Set(), b.spots);
-            });
-  for (size_t i = 1; i < records.size(); ++i) {
-    if (records[i].Set() != records[i - 1].Set()) continue;
-    records[i].spots = records[i - 1].spots;
-    ++result.report.duplicate_faces;
+    const bool descends = t[2] < t[1];
+    if (descends) std::swap(t[1], t[2]);
+    records.push_back({t, descends, f});
   }
   std::sort(records.begin(), records.end(),
             [](const FaceRecord& a, const FaceRecord& b) {
               return a.spots < b.spots;
             });
+  return records;
+}
+
+// Fills result.mesh.faces (still between spots, ascending) and the face_map of
+// all but degenerate faces.
+std::vector<Directions> KeepFaces(const std::vector<FaceRecord>& records,
+                                  CanonicalMesh& result) {
+  std::vector<Directions> directions;
   std::vector<Triangle>& faces = result.mesh.faces;
-  for (const FaceRecord& record : records) {
-    if (faces.empty() || faces.back() != record.spots) {
-      faces.push_back(record.spots);
+  for (const auto& [spots, descends, decoded_face] : records) {
+    if (faces.empty() || faces.back() != spots) {
+      faces.push_back(spots);
+      directions.emplace_back();
     }
-    result.face_map[record.decoded_face] =
-        static_cast<uint32_t>(faces.size() - 1);
+    (descends ? directions.back().descending : directions.back().ascending) =
+        true;
+    result.face_map[decoded_face] = static_cast<uint32_t>(faces.size() - 1);
   }
+  return directions;
 }
 
 // Numbers the spots that are used; the numbers keep the order of the spots, so
-// the faces stay rotated and sorted. Returns spot -> vertex.
+// the faces stay ascending and sorted. Returns spot -> vertex.
 std::vector<uint32_t> KeepVertices(const Spots& spots, TriangleMesh& mesh) {
   std::vector<uint32_t> vertex_of_spot(spots.positions.rows(), kNoIndex);
   for (const Triangle& face : mesh.faces) {
@@ -163,6 +163,41 @@ std::vector<uint32_t> KeepVertices(const Spots& spots, TriangleMesh& mesh) {
     for (uint32_t& corner : face) corner = vertex_of_spot[corner];
   }
   return vertex_of_spot;
+}
+
+// The least number of faces that the payload would have to turn over; none of
+// those that it has both ways.
+uint64_t CountFlipped(const std::vector<Directions>& directions,
+                      const Sides& sides) {
+  std::vector<std::array<uint64_t, 2>> counts(sides.NumParts());
+  for (size_t f = 0; f < directions.size(); ++f) {
+    const auto [ascending, descending] = directions[f];
+    if (ascending != descending)
+      ++counts[sides.part[f]][descending != sides.is_turned[f]];
+  }
+  uint64_t flipped = 0;
+  for (uint32_t i = 0; i < sides.NumParts(); ++i)
+    if (!sides.is_one_sided[i]) flipped += std::min(counts[i][0], counts[i][1]);
+  return flipped;
+}
+
+// Turns faces over, and sorts them anew.
+void TurnOver(const std::vector<bool>& turned, CanonicalMesh& result) {
+  std::vector<Triangle>& faces = result.mesh.faces;
+  std::vector<std::pair<Triangle, uint32_t>> sorted;
+  sorted.reserve(faces.size());
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    if (turned[f]) std::swap(faces[f][1], faces[f][2]);
+    sorted.push_back({faces[f], f});
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<uint32_t> now(faces.size());
+  for (uint32_t f = 0; f < sorted.size(); ++f) {
+    faces[f] = sorted[f].first;
+    now[sorted[f].second] = f;
+  }
+  for (uint32_t& f : result.face_map)
+    if (f != kNoIndex) f = now[f];
 }
 
 // Finds the kept face whose labels a dropped degenerate face shall have.
@@ -282,7 +317,7 @@ absl::Status CheckSize(const MeshReport& report) {
 absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
                                        const Spots& spots,
                                        std::vector<uint32_t>& vertex_of_spot) {
-  std::vector<FaceRecord> records = RotatedFaces(decoded, spots);
+  const std::vector<FaceRecord> records = SortedFaces(decoded, spots);
   if (records.empty()) {
     return Rejected(absl::StrCat(
         "all ", decoded.faces.size(),
@@ -290,19 +325,20 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
         "were rounded away, move the mesh nearer to the origin"));
   }
   CanonicalMesh result;
-  const uint64_t degenerate_faces = decoded.faces.size() - records.size();
   result.face_map.assign(decoded.faces.size(), kNoIndex);
-  KeepFaces(std::move(records), result);
-  const uint64_t duplicate_faces = result.report.duplicate_faces;
+  const std::vector<Directions> directions = KeepFaces(records, result);
   vertex_of_spot = KeepVertices(spots, result.mesh);
+  const Sides sides = FindSides(result.mesh, Adjacency(result.mesh));
+  TurnOver(FacesInward(result.mesh, sides), result);
   result.report = ReportOn(result.mesh);
   result.report.decoded_points = decoded.positions.rows();
   result.report.decoded_faces = decoded.faces.size();
   result.report.welded_points =
       decoded.positions.rows() - spots.positions.rows();
   result.report.unused_points = CountUnusedPoints(decoded);
-  result.report.degenerate_faces = degenerate_faces;
-  result.report.duplicate_faces = duplicate_faces;
+  result.report.degenerate_faces = decoded.faces.size() - records.size();
+  result.report.duplicate_faces = records.size() - directions.size();
+  result.report.flipped_faces = CountFlipped(directions, sides);
   MARROW_RETURN_IF_ERROR(CheckSize(result.report));
   return result;
 }

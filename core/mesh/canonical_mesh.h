@@ -1,14 +1,14 @@
 // Decoded mesh -> welded mesh in canonical order, with the way back.
 //
-// Everything is computed on the canonical mesh, so the numbering of the file
-// cannot matter: equal points are one vertex (-0 equals 0), and so are points
-// on either side of a crack (core/mesh/cracks.h), vertices are sorted
-// by position, each face is rotated to begin with its least vertex and the
-// faces are sorted. Positions are sorted along the Z-order curve of their
-// coordinates as binary numbers: what is near in number is near on the surface,
-// mostly, and a part of a mesh has its vertices in the order that they have
-// alone. Of faces with the same three vertices the one that sorts first is
-// kept. Orientation is kept.
+// Everything is computed on the canonical mesh, so neither the numbering of the
+// file can matter nor which way its faces are turned: equal points are one
+// vertex (-0 equals 0), and so are points on either side of a crack
+// (core/mesh/cracks.h), vertices are sorted by position, each face is rotated
+// to begin with its least vertex and the faces are sorted. Positions are sorted
+// along the Z-order curve of their coordinates as binary numbers: what is near
+// in number is near on the surface, mostly, and a part of a mesh has its
+// vertices in the order that they have alone. Of faces with the same vertices
+// one is kept, and faces agree, outwards, where they can (FacesInward()).
 #ifndef MARROW_CORE_MESH_CANONICAL_MESH_H_
 #define MARROW_CORE_MESH_CANONICAL_MESH_H_
 

@@ -13,7 +13,7 @@ namespace marrow {
 
 // Immutable once built. "Fine" is the mesh that it was made from.
 struct CoarseMesh {
-  // As in Submesh: in canonical order, with the digest of its own geometry.
+  // As in Submesh: in canonical order, turned as the fine one, with a digest.
   CanonicalMesh canonical;
   std::vector<uint32_t> vertices;  // coarse vertex -> that fine one, ascending
   std::vector<uint32_t> faces;     // coarse face -> a fine face of its patch

@@ -12,8 +12,8 @@ namespace marrow {
 
 struct Submesh {
   // What Canonicalize() gives for a payload of these faces alone, to the last
-  // bit of the digest; the maps are empty, and of the report there is what
-  // ReportOn() finds.
+  // bit of the digest if they are whole components, else but for which way the
+  // faces of a part are turned. No maps; of the report what ReportOn() finds.
   CanonicalMesh canonical;
   std::vector<uint32_t> vertices;  // own vertex -> the mesh's, ascending
 };

@@ -204,12 +204,105 @@ TEST(CanonicalMeshTest, LeavesGapsOpen) {
   EXPECT_EQ(c.report.crack_points, 0u);
 }
 
-TEST(CanonicalMeshTest, KeepsOrientation) {
+TEST(CanonicalMeshTest, RotatesFaces) {
   const auto c =
-      Canonical(MeshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{1, 2, 0}}));
-  // In canonical order the points are (0,0,0), (0,1,0), (1,0,0).
-  EXPECT_THAT(c.mesh.faces, ElementsAre(Triangle{0, 2, 1}));
-  EXPECT_THAT(c.point_map, ElementsAre(0, 2, 1));
+      Canonical(MeshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                       {{1, 0, 2}, {3, 0, 1}, {2, 0, 3}, {3, 1, 2}}));
+  // In canonical order the points are (0,0,0), (0,0,1), (0,1,0), (1,0,0).
+  EXPECT_THAT(c.mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3},
+                                        Triangle{0, 3, 1}, Triangle{1, 3, 2}));
+  EXPECT_THAT(c.face_map, ElementsAre(1, 2, 0, 3));
+  EXPECT_THAT(c.point_map, ElementsAre(0, 3, 2, 1));
+  EXPECT_EQ(c.report.flipped_faces, 0u);
+}
+
+void Flip(Triangle& face) { std::swap(face[1], face[2]); }
+
+// However many faces a file has the wrong way round, the mesh is the same.
+TEST(CanonicalMeshTest, TurningFacesCannotMatter) {
+  const DecodedMesh mesh = Torus(9, 11);
+  const CanonicalMesh expected = Canonical(mesh);
+  for (const uint32_t share : {1u, 9u, 10u, 11u, 19u, 20u}) {
+    DecodedMesh turned = mesh;
+    std::mt19937 random(share);
+    uint64_t count = 0;
+    for (Triangle& face : turned.faces)
+      if (random() % 20 < share) {
+        Flip(face);
+        ++count;
+      }
+    const CanonicalMesh c = Canonical(turned);
+    EXPECT_EQ(c.mesh.faces, expected.mesh.faces);
+    EXPECT_EQ(c.face_map, expected.face_map);
+    EXPECT_EQ(c.geometry_digest, expected.geometry_digest);
+    EXPECT_EQ(c.report.flipped_faces, std::min(count, 198 - count));
+  }
+}
+
+// Faces back to back, as programs write them that show one side alone. Either
+// may be the one that is kept, so there is none to turn over.
+TEST(CanonicalMeshTest, FacesBackToBackAreOne) {
+  const DecodedMesh mesh = Torus(9, 11);
+  const CanonicalMesh expected = Canonical(mesh);
+  DecodedMesh doubled = mesh;
+  for (Triangle face : mesh.faces) {
+    Flip(face);
+    doubled.faces.push_back(face);
+  }
+  CanonicalMesh c = Canonical(doubled);
+  EXPECT_EQ(c.mesh.faces, expected.mesh.faces);
+  EXPECT_EQ(c.geometry_digest, expected.geometry_digest);
+  for (uint32_t f = 0; f < 198; ++f) {
+    EXPECT_EQ(c.face_map[f], expected.face_map[f]);
+    EXPECT_EQ(c.face_map[f + 198], expected.face_map[f]);
+  }
+  EXPECT_EQ(c.report.duplicate_faces, 198u);
+  EXPECT_EQ(c.report.flipped_faces, 0u);
+  // Of one that is there once, and of one that is there twice and no other way.
+  doubled.faces.pop_back();
+  Flip(doubled.faces[197]);
+  doubled.faces[198] = doubled.faces[0];
+  Flip(doubled.faces[0]);
+  Flip(doubled.faces[198]);
+  c = Canonical(doubled);
+  EXPECT_EQ(c.geometry_digest, expected.geometry_digest);
+  EXPECT_EQ(c.report.duplicate_faces, 197u);
+  // Those two disagree with nothing else: the others have no direction.
+  EXPECT_EQ(c.report.flipped_faces, 0u);
+  Flip(doubled.faces[197]);
+  EXPECT_EQ(Canonical(doubled).report.flipped_faces, 1u);
+}
+
+// It has no outside, yet is the same whichever way its faces are turned.
+TEST(CanonicalMeshTest, TurningFacesOfAMoebiusStripCannotMatter) {
+  DecodedMesh strip;
+  constexpr uint32_t kLength = 9;
+  for (uint32_t i = 0; i < kLength; ++i) {
+    const bool last = i + 1 == kLength;
+    const uint32_t a = 2 * i, b = a + 1;
+    const uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    strip.faces.push_back({a, c, b});
+    strip.faces.push_back({b, c, d});
+  }
+  strip.positions.resize(2 * kLength, 3);
+  for (uint32_t i = 0; i < kLength; ++i)
+    for (const uint32_t side : {0u, 1u}) {
+      const double around = 2 * M_PI * i / kLength, across = side - 0.5;
+      const double radius = 2 + across * std::cos(around / 2);
+      strip.positions.row(2 * i + side) << radius * std::cos(around),
+          radius * std::sin(around), across * std::sin(around / 2);
+    }
+  const CanonicalMesh expected = Canonical(strip);
+  EXPECT_FALSE(expected.report.orientable);
+  for (uint32_t seed = 1; seed <= 5; ++seed) {
+    std::mt19937 random(seed);
+    DecodedMesh turned = strip;
+    for (Triangle& face : turned.faces)
+      if (random() % 2 == 0) Flip(face);
+    const CanonicalMesh c = Canonical(turned);
+    EXPECT_EQ(c.geometry_digest, expected.geometry_digest);
+    EXPECT_EQ(c.report.flipped_faces, 0u);
+  }
 }
 
 TEST(CanonicalMeshTest, DigestSeesGeometryAlone) {
@@ -220,7 +313,7 @@ TEST(CanonicalMeshTest, DigestSeesGeometryAlone) {
   EXPECT_NE(Canonical(moved).geometry_digest, digest);
   DecodedMesh flipped = mesh;
   std::swap(flipped.faces[3][0], flipped.faces[3][1]);
-  EXPECT_NE(Canonical(flipped).geometry_digest, digest);
+  EXPECT_EQ(Canonical(flipped).geometry_digest, digest);
   DecodedMesh open = mesh;
   open.faces.pop_back();
   EXPECT_NE(Canonical(open).geometry_digest, digest);

@@ -30,6 +30,15 @@ FacePairs NeighbourLabels(const TriangleMesh& mesh,
   return pairs;
 }
 
+std::set<Triangle> CornerSets(const TriangleMesh& mesh) {
+  std::set<Triangle> sets;
+  for (Triangle face : mesh.faces) {
+    std::sort(face.begin(), face.end());
+    sets.insert(face);
+  }
+  return sets;
+}
+
 void ExpectMapsHold(const TriangleMesh& fine, const CoarseMesh& coarse) {
   const TriangleMesh& mesh = coarse.canonical.mesh;
   ASSERT_EQ(coarse.vertices.size(), mesh.NumVertices());
@@ -40,8 +49,13 @@ void ExpectMapsHold(const TriangleMesh& fine, const CoarseMesh& coarse) {
   ASSERT_EQ(coarse.coarse_face.size(), fine.NumFaces());
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
     EXPECT_EQ(coarse.coarse_face[coarse.faces[f]], f);
-  EXPECT_EQ(CanonicalOf(mesh).geometry_digest,
-            coarse.canonical.geometry_digest);
+  const CanonicalMesh canonical = CanonicalOf(mesh);
+  EXPECT_EQ(canonical.mesh.positions, mesh.positions);
+  EXPECT_EQ(CornerSets(canonical.mesh), CornerSets(mesh));
+  EXPECT_TRUE(std::is_sorted(mesh.faces.begin(), mesh.faces.end()));
+  for (const Triangle& face : mesh.faces)
+    EXPECT_EQ(face[0], std::ranges::min(face));
+  EXPECT_EQ(coarse.canonical.geometry_digest, GeometryDigestOf(mesh));
 
   // Patches are connected, and neighbours have neighbouring ones.
   const Adjacency adjacency(fine);

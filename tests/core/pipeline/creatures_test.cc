@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,31 @@ TEST_P(CreatureTest, ResultsAreSoundAndTheNumberingDoesNotMatter) {
     for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
       ASSERT_EQ(other.levels[i].face_labels[f],
                 run.levels[i].face_labels[renumbering.old_face[f]]);
+}
+
+// By the default method: it measures the surface, where the operator does not
+// see which way faces are turned.
+TEST_P(CreatureTest, WhichWayFacesAreTurnedDoesNotMatter) {
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
+  SegmentationOptions options;
+  options.levels = 3;
+  const RecordingSink expected = RunOn(mesh, options);
+  TriangleMesh half = mesh, doubled = mesh;
+  std::mt19937 random(7);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    const auto [a, b, c] = mesh.faces[f];
+    if (random() % 2 == 0) half.faces[f] = {a, c, b};
+    doubled.faces.push_back({a, c, b});
+  }
+  for (const TriangleMesh& other : {half, doubled}) {
+    const RecordingSink run = RunOn(other, options);
+    ExpectSameTree(run.tree, expected.tree);
+    ASSERT_EQ(run.levels.size(), expected.levels.size());
+    for (size_t i = 0; i < run.levels.size(); ++i)
+      for (uint32_t f = 0; f < other.NumFaces(); ++f)
+        ASSERT_EQ(run.levels[i].face_labels[f],
+                  expected.levels[i].face_labels[f % mesh.NumFaces()]);
+  }
 }
 
 TEST_P(CreatureTest, RotationAndScaleKeepThePartition) {
