@@ -1,11 +1,5 @@
-// Every phase of a solve stops soon after it is cancelled, wherever it is. In
-// seconds of a processor, so that it holds on a busy machine too.
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <functional>
+// Every phase of a solve stops soon after it is cancelled, wherever it is.
 #include <memory>
-#include <thread>
 
 #include "core/operators/laplacian.h"
 #include "core/spectrum/band_lanczos.h"
@@ -15,43 +9,14 @@
 #include "core/spectrum/shift_grid.h"
 #include "core/spectrum/solver.h"
 #include "gtest/gtest.h"
-#include "tests/testing/cpu_time.h"
 #include "tests/testing/shapes.h"
+#include "tests/testing/slowest_stop.h"
 
 namespace marrow {
 namespace {
 
 // What a phase may go on for, all its threads together.
 constexpr double kMostSeconds = 0.1;
-
-// Runs `work` again and again, cancelled a little later each time, until it is
-// done before that: at `step` seconds of its work, at two ... at `most` at the
-// latest. The longest that it went on for.
-double SlowestStop(
-    double step, double most,
-    const std::function<absl::Status(const CancelToken&)>& work) {
-  double slowest = 0;
-  for (double delay = step; delay < most; delay += step) {
-    CancelToken cancel;
-    std::atomic<bool> done{false};
-    double cancelled_at = 0;
-    const double begin = CpuSeconds();
-    std::thread canceller([&] {
-      while (CpuSeconds() - begin < delay && !done)
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-      cancelled_at = CpuSeconds();
-      cancel.Cancel();
-    });
-    const absl::Status status = work(cancel);
-    const double stopped_at = CpuSeconds();
-    done = true;
-    canceller.join();
-    if (status.ok()) break;
-    EXPECT_EQ(status.code(), absl::StatusCode::kCancelled) << status;
-    slowest = std::max(slowest, stopped_at - cancelled_at);
-  }
-  return slowest;
-}
 
 // 163,842 vertices, and what the later phases begin with.
 class CancellationTest : public ::testing::Test {
