@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include "core/base/cancellable.h"
 
 namespace marrow {
 namespace {
@@ -17,52 +20,62 @@ std::array<uint32_t, 2> SideVertices(const TriangleMesh& mesh, uint32_t side) {
 
 // Stable counting sort of `items` by key(item) < num_keys.
 template <typename Key>
-std::vector<uint32_t> SortByKey(const std::vector<uint32_t>& items,
-                                uint32_t num_keys, const Key& key) {
+absl::Status SortByKey(uint32_t num_keys, const Key& key,
+                       const CancelToken& cancel,
+                       std::vector<uint32_t>& items) {
   std::vector<uint32_t> next(size_t{num_keys} + 1, 0);
-  for (uint32_t item : items) ++next[key(item) + 1];
+  MARROW_RETURN_IF_ERROR(ForEachIndex(
+      items.size(), cancel, [&](size_t i) { ++next[key(items[i]) + 1]; }));
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<uint32_t> sorted(items.size());
-  for (uint32_t item : items) sorted[next[key(item)]++] = item;
-  return sorted;
+  MARROW_RETURN_IF_ERROR(ForEachIndex(items.size(), cancel, [&](size_t i) {
+    sorted[next[key(items[i])]++] = items[i];
+  }));
+  items = std::move(sorted);
+  return absl::OkStatus();
 }
 
 }  // namespace
 
-Adjacency::Adjacency(const TriangleMesh& mesh) {
-  BuildVertexFaces(mesh);
-  BuildEdges(mesh);
+Adjacency::Adjacency(const TriangleMesh& mesh, const CancelToken& cancel) {
+  // What is cancelled is known to those who hold the token.
+  if (BuildVertexFaces(mesh, cancel).ok()) (void)BuildEdges(mesh, cancel);
 }
 
-void Adjacency::BuildVertexFaces(const TriangleMesh& mesh) {
+absl::Status Adjacency::BuildVertexFaces(const TriangleMesh& mesh,
+                                         const CancelToken& cancel) {
   vertex_offsets_.assign(size_t{mesh.NumVertices()} + 1, 0);
-  for (const Triangle& face : mesh.faces) {
-    for (uint32_t v : face) ++vertex_offsets_[v + 1];
-  }
+  MARROW_RETURN_IF_ERROR(ForEachIndex(mesh.faces.size(), cancel, [&](size_t f) {
+    for (uint32_t v : mesh.faces[f]) ++vertex_offsets_[v + 1];
+  }));
   std::partial_sum(vertex_offsets_.begin(), vertex_offsets_.end(),
                    vertex_offsets_.begin());
   vertex_faces_.resize(3 * mesh.faces.size());
   std::vector<uint32_t> next(vertex_offsets_.begin(),
                              vertex_offsets_.end() - 1);
-  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    for (uint32_t v : mesh.faces[f]) vertex_faces_[next[v]++] = f;
-  }
+  return ForEachIndex(mesh.faces.size(), cancel, [&](size_t f) {
+    for (uint32_t v : mesh.faces[f])
+      vertex_faces_[next[v]++] = static_cast<uint32_t>(f);
+  });
 }
 
-void Adjacency::BuildEdges(const TriangleMesh& mesh) {
+absl::Status Adjacency::BuildEdges(const TriangleMesh& mesh,
+                                   const CancelToken& cancel) {
   std::vector<uint32_t> sides(3 * mesh.faces.size());
   std::iota(sides.begin(), sides.end(), 0);
   // Least significant key first; stability keeps faces ascending in an edge.
   for (int end : {1, 0}) {
-    sides = SortByKey(sides, mesh.NumVertices(), [&](uint32_t side) {
+    const auto key = [&](uint32_t side) {
       return SideVertices(mesh, side)[end];
-    });
+    };
+    MARROW_RETURN_IF_ERROR(SortByKey(mesh.NumVertices(), key, cancel, sides));
   }
   face_edges_.resize(mesh.faces.size());
   edge_faces_.reserve(sides.size());
   edge_vertices_.reserve(sides.size() / 2 + 1);
   edge_offsets_.reserve(sides.size() / 2 + 2);
-  for (uint32_t side : sides) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(sides.size(), cancel, [&](size_t i) {
+    const uint32_t side = sides[i];
     const std::array<uint32_t, 2> vertices = SideVertices(mesh, side);
     // Not by !=, which calls memcmp for these eight bytes.
     if (edge_vertices_.empty() || edge_vertices_.back()[0] != vertices[0] ||
@@ -72,8 +85,9 @@ void Adjacency::BuildEdges(const TriangleMesh& mesh) {
     }
     face_edges_[side / 3][side % 3] = NumEdges() - 1;
     edge_faces_.push_back(side / 3);
-  }
+  }));
   edge_offsets_.push_back(static_cast<uint32_t>(edge_faces_.size()));
+  return absl::OkStatus();
 }
 
 }  // namespace marrow

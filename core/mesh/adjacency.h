@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -20,8 +22,10 @@ namespace marrow {
 // as long as the object. Time and memory are linear in the size of the mesh.
 class Adjacency {
  public:
-  // REQUIRES: every face has three different corners, all < NumVertices().
-  explicit Adjacency(const TriangleMesh& mesh);
+  // Of no use once cancelled. REQUIRES: every face has three different
+  // corners, all < NumVertices().
+  explicit Adjacency(const TriangleMesh& mesh,
+                     const CancelToken& cancel = CancelToken());
 
   uint32_t NumVertices() const {
     return static_cast<uint32_t>(vertex_offsets_.size() - 1);
@@ -57,8 +61,9 @@ class Adjacency {
   }
 
  private:
-  void BuildVertexFaces(const TriangleMesh& mesh);
-  void BuildEdges(const TriangleMesh& mesh);
+  absl::Status BuildVertexFaces(const TriangleMesh& mesh,
+                                const CancelToken& cancel);
+  absl::Status BuildEdges(const TriangleMesh& mesh, const CancelToken& cancel);
 
   std::vector<uint32_t> vertex_offsets_;
   std::vector<uint32_t> vertex_faces_;

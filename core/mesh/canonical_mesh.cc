@@ -4,11 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/cancellable.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/mesh/adjacency.h"
@@ -57,7 +59,7 @@ struct Spots {
   std::vector<uint32_t> of_point;
 };
 
-Spots Weld(const Positions& points) {
+absl::StatusOr<Spots> Weld(const Positions& points, const CancelToken& cancel) {
   struct Record {
     Eigen::Vector3d place;
     uint32_t point;
@@ -66,20 +68,21 @@ Spots Weld(const Positions& points) {
   for (uint32_t p = 0; p < records.size(); ++p)
     // Adding 0 makes -0 into 0 and leaves everything else.
     records[p] = {points.row(p).transpose().array() + 0.0, p};
-  std::sort(records.begin(), records.end(),
-            [](const Record& a, const Record& b) {
-              return IsBeforeOnCurve(a.place, b.place);
-            });
+  const auto before = [](const Record& a, const Record& b) {
+    return IsBeforeOnCurve(a.place, b.place);
+  };
+  MARROW_RETURN_IF_ERROR(
+      SortUnlessCancelled(records.begin(), records.end(), before, cancel));
   Spots spots;
   spots.of_point.resize(records.size());
   spots.positions.resize(points.rows(), 3);
   uint32_t count = 0;
-  for (size_t i = 0; i < records.size(); ++i) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(records.size(), cancel, [&](size_t i) {
     const auto& [place, point] = records[i];
     if (i == 0 || place != records[i - 1].place)
       spots.positions.row(count++) = place.transpose();
     spots.of_point[point] = count - 1;
-  }
+  }));
   spots.positions.conservativeResize(count, 3);
   return spots;
 }
@@ -107,8 +110,8 @@ Triangle OnSpots(const Triangle& face, const Spots& spots) {
           spots.of_point[face[2]]};
 }
 
-std::vector<FaceRecord> SortedFaces(const DecodedMesh& decoded,
-                                    const Spots& spots) {
+std::vector<FaceRecord> FacesOnSpots(const DecodedMesh& decoded,
+                                     const Spots& spots) {
   std::vector<FaceRecord> records;
   records.reserve(decoded.faces.size());
   for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
@@ -119,18 +122,19 @@ std::vector<FaceRecord> SortedFaces(const DecodedMesh& decoded,
     if (descends) std::swap(t[1], t[2]);
     records.push_back({t, descends, f});
   }
-  std::sort(records.begin(), records.end(),
-            [](const FaceRecord& a, const FaceRecord& b) {
-              return a.spots < b.spots;
-            });
   return records;
 }
 
-// Fills result.mesh.faces (still between spots, ascending) and the face_map of
-// all but degenerate faces.
-std::vector<Directions> KeepFaces(const std::vector<FaceRecord>& records,
-                                  CanonicalMesh& result) {
-  std::vector<Directions> directions;
+// Fills result.mesh.faces (still between spots, ascending), the face_map of
+// all but degenerate faces, and `directions` of the kept ones. Sorts them.
+absl::Status KeepFaces(std::vector<FaceRecord>& records,
+                       const CancelToken& cancel, CanonicalMesh& result,
+                       std::vector<Directions>& directions) {
+  const auto by_spots = [](const FaceRecord& a, const FaceRecord& b) {
+    return a.spots < b.spots;
+  };
+  MARROW_RETURN_IF_ERROR(
+      SortUnlessCancelled(records.begin(), records.end(), by_spots, cancel));
   std::vector<Triangle>& faces = result.mesh.faces;
   for (const auto& [spots, descends, decoded_face] : records) {
     if (faces.empty() || faces.back() != spots) {
@@ -141,7 +145,7 @@ std::vector<Directions> KeepFaces(const std::vector<FaceRecord>& records,
         true;
     result.face_map[decoded_face] = static_cast<uint32_t>(faces.size() - 1);
   }
-  return directions;
+  return cancel.Check();
 }
 
 // Numbers the spots that are used; the numbers keep the order of the spots, so
@@ -203,8 +207,10 @@ void TurnOver(const std::vector<bool>& turned, CanonicalMesh& result) {
 // Finds the kept face whose labels a dropped degenerate face shall have.
 class NeighbourFinder {
  public:
+  // Of no use once cancelled.
   NeighbourFinder(const TriangleMesh& mesh, const Spots& spots,
-                  const std::vector<uint32_t>& vertex_of_spot)
+                  const std::vector<uint32_t>& vertex_of_spot,
+                  const CancelToken& cancel)
       : spots_(spots),
         vertex_of_spot_(vertex_of_spot),
         first_face_(mesh.NumVertices(), kNoIndex) {
@@ -215,8 +221,9 @@ class NeighbourFinder {
         sides_.push_back({std::min(v, w), std::max(v, w), f});
       }
     }
-    std::sort(sides_.begin(), sides_.end());
-    FindNearestUsed();
+    if (SortUnlessCancelled(sides_.begin(), sides_.end(), std::less<>(), cancel)
+            .ok())
+      FindNearestUsed();
   }
 
   uint32_t FaceFor(const Triangle& degenerate) const {
@@ -268,15 +275,16 @@ class NeighbourFinder {
   std::vector<uint32_t> nearest_used_;
 };
 
-void MapDegenerateFaces(const DecodedMesh& decoded, const Spots& spots,
-                        const std::vector<uint32_t>& vertex_of_spot,
-                        CanonicalMesh& result) {
-  if (result.report.degenerate_faces == 0) return;
-  const NeighbourFinder finder(result.mesh, spots, vertex_of_spot);
-  for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
-    if (result.face_map[f] != kNoIndex) continue;
+absl::Status MapDegenerateFaces(const DecodedMesh& decoded, const Spots& spots,
+                                const std::vector<uint32_t>& vertex_of_spot,
+                                const CancelToken& cancel,
+                                CanonicalMesh& result) {
+  if (result.report.degenerate_faces == 0) return absl::OkStatus();
+  const NeighbourFinder finder(result.mesh, spots, vertex_of_spot, cancel);
+  return ForEachIndex(decoded.faces.size(), cancel, [&](size_t f) {
+    if (result.face_map[f] != kNoIndex) return;
     result.face_map[f] = finder.FaceFor(OnSpots(decoded.faces[f], spots));
-  }
+  });
 }
 
 uint64_t CountUnusedPoints(const DecodedMesh& decoded) {
@@ -316,8 +324,9 @@ absl::Status CheckSize(const MeshReport& report) {
 // All but the maps of degenerate faces and points, and the digest.
 absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
                                        const Spots& spots,
+                                       const CancelToken& cancel,
                                        std::vector<uint32_t>& vertex_of_spot) {
-  const std::vector<FaceRecord> records = SortedFaces(decoded, spots);
+  std::vector<FaceRecord> records = FacesOnSpots(decoded, spots);
   if (records.empty()) {
     return Rejected(absl::StrCat(
         "all ", decoded.faces.size(),
@@ -326,11 +335,17 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
   }
   CanonicalMesh result;
   result.face_map.assign(decoded.faces.size(), kNoIndex);
-  const std::vector<Directions> directions = KeepFaces(records, result);
+  std::vector<Directions> directions;
+  MARROW_RETURN_IF_ERROR(KeepFaces(records, cancel, result, directions));
   vertex_of_spot = KeepVertices(spots, result.mesh);
-  const Sides sides = FindSides(result.mesh, Adjacency(result.mesh));
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const Sides sides =
+      FindSides(result.mesh, Adjacency(result.mesh, cancel), cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   TurnOver(FacesInward(result.mesh, sides), result);
-  result.report = ReportOn(result.mesh);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  result.report = ReportOn(result.mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   result.report.decoded_points = decoded.positions.rows();
   result.report.decoded_faces = decoded.faces.size();
   result.report.welded_points =
@@ -344,11 +359,12 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
 }
 
 // How many vertices became one with another.
-uint64_t CloseCracks(const CanonicalMesh& mesh,
-                     const std::vector<uint32_t>& vertex_of_spot,
-                     Spots& spots) {
+absl::StatusOr<uint64_t> CloseCracks(
+    const CanonicalMesh& mesh, const std::vector<uint32_t>& vertex_of_spot,
+    const CancelToken& cancel, Spots& spots) {
   if (mesh.report.boundary_edges == 0) return 0;
-  const std::vector<uint32_t> closed = FindCracks(mesh.mesh);
+  MARROW_ASSIGN_OR_RETURN(const std::vector<uint32_t> closed,
+                          FindCracks(mesh.mesh, cancel));
   std::vector<uint32_t> spot_of_vertex(closed.size());
   for (uint32_t s = 0; s < vertex_of_spot.size(); ++s)
     if (vertex_of_spot[s] != kNoIndex) spot_of_vertex[vertex_of_spot[s]] = s;
@@ -372,18 +388,22 @@ Digest GeometryDigestOf(const TriangleMesh& mesh) {
   return builder.Finish();
 }
 
-absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded) {
+absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded,
+                                           const CancelToken& cancel) {
   if (decoded.faces.empty()) return Rejected("the mesh has no faces");
-  Spots spots = Weld(decoded.positions);
+  MARROW_ASSIGN_OR_RETURN(Spots spots, Weld(decoded.positions, cancel));
   std::vector<uint32_t> vertex_of_spot;
   MARROW_ASSIGN_OR_RETURN(CanonicalMesh result,
-                          Assemble(decoded, spots, vertex_of_spot));
-  const uint64_t cracked = CloseCracks(result, vertex_of_spot, spots);
+                          Assemble(decoded, spots, cancel, vertex_of_spot));
+  MARROW_ASSIGN_OR_RETURN(const uint64_t cracked,
+                          CloseCracks(result, vertex_of_spot, cancel, spots));
   if (cracked > 0) {
-    MARROW_ASSIGN_OR_RETURN(result, Assemble(decoded, spots, vertex_of_spot));
+    MARROW_ASSIGN_OR_RETURN(result,
+                            Assemble(decoded, spots, cancel, vertex_of_spot));
     result.report.crack_points = cracked;
   }
-  MapDegenerateFaces(decoded, spots, vertex_of_spot, result);
+  MARROW_RETURN_IF_ERROR(
+      MapDegenerateFaces(decoded, spots, vertex_of_spot, cancel, result));
   result.point_map.reserve(spots.of_point.size());
   for (uint32_t spot : spots.of_point)
     result.point_map.push_back(vertex_of_spot[spot]);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
 #include "core/base/digest.h"
 #include "core/mesh/decode.h"
 #include "core/mesh/mesh_report.h"
@@ -40,10 +41,11 @@ struct CanonicalMesh {
 
 // Errors: INVALID_ARGUMENT with reason MESH_REJECTED where no face is left or
 // the area is zero, not finite, or under 1e-30 of the squared extent; the
-// message says which. REQUIRES: positions
-// are finite and face indices are points. Deterministic; time O(n log n).
-// Thread safe.
-absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded);
+// message says which; CANCELLED. REQUIRES:
+// positions are finite and face indices are points. Deterministic; time
+// O(n log n). Thread safe.
+absl::StatusOr<CanonicalMesh> Canonicalize(
+    const DecodedMesh& decoded, const CancelToken& cancel = CancelToken());
 
 // The digest of a mesh that is in canonical order. Thread safe.
 Digest GeometryDigestOf(const TriangleMesh& mesh);

@@ -2,12 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
 
 #include "absl/container/inlined_vector.h"
+#include "core/base/cancellable.h"
 #include "core/mesh/mesh_report.h"
 #include "core/mesh/place_factors.h"
 
@@ -84,21 +86,27 @@ class Coarsener {
   uint32_t num_vertices() const { return num_vertices_; }
 
   // Takes away vertices that are no neighbours of each other, down to `least`.
-  void Round(uint32_t least, const ShapeLimits& limits,
-             const CancelToken& cancel) {
+  absl::Status Round(uint32_t least, const ShapeLimits& limits,
+                     const CancelToken& cancel) {
     if (limits != limits_) stuck_.assign(stuck_.size(), false);
     limits_ = limits;
     Unstick();
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     GatherStars();
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     locked_.assign(mesh_.NumVertices(), false);
-    for (uint32_t u : ShortestFirst()) {
-      if (num_vertices_ <= least || cancel.IsCancelled()) break;
+    MARROW_ASSIGN_OR_RETURN(const std::vector<uint32_t> order,
+                            ShortestFirst(cancel));
+    for (uint32_t u : order) {
+      if (num_vertices_ <= least) break;
+      MARROW_RETURN_IF_ERROR(cancel.Check());
       if (!locked_[u] && !stuck_[u]) TryCollapse(u);
     }
     std::erase_if(live_, [&](uint32_t f) { return heir_[f] != f; });
+    return absl::OkStatus();
   }
 
-  CoarseMesh Take() {
+  absl::StatusOr<CoarseMesh> Take(const CancelToken& cancel) {
     CoarseMesh result;
     TriangleMesh& coarse = result.canonical.mesh;
     coarse.positions.resize(num_vertices_, 3);
@@ -109,8 +117,9 @@ class Coarsener {
       coarse.positions.row(own[v]) = mesh_.positions.row(v);
       result.vertices.push_back(v);
     }
-    TakeFaces(own, result);
-    result.canonical.report = ReportOn(coarse);
+    MARROW_RETURN_IF_ERROR(TakeFaces(own, cancel, result));
+    result.canonical.report = ReportOn(coarse, cancel);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     result.canonical.geometry_digest = GeometryDigestOf(coarse);
     return result;
   }
@@ -139,7 +148,8 @@ class Coarsener {
   }
 
   // The vertices with the shortest edges, by these.
-  std::vector<uint32_t> ShortestFirst() const {
+  absl::StatusOr<std::vector<uint32_t>> ShortestFirst(
+      const CancelToken& cancel) const {
     std::vector<double> shortest(mesh_.NumVertices(),
                                  std::numeric_limits<double>::infinity());
     for (uint32_t f : live_)
@@ -155,8 +165,10 @@ class Coarsener {
       if (!gone_[v]) order.push_back({factors_[v] * shortest[v], v});
     const auto middle =
         order.begin() + static_cast<size_t>(kShareARound * order.size());
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     std::nth_element(order.begin(), middle, order.end());
-    std::sort(order.begin(), middle);
+    MARROW_RETURN_IF_ERROR(
+        SortUnlessCancelled(order.begin(), middle, std::less<>(), cancel));
     std::vector<uint32_t> vertices;
     vertices.reserve(middle - order.begin());
     for (auto it = order.begin(); it != middle; ++it)
@@ -303,8 +315,10 @@ class Coarsener {
   }
 
   // `own` is the coarse number of each fine vertex that is left.
-  void TakeFaces(const std::vector<uint32_t>& own, CoarseMesh& result) {
+  absl::Status TakeFaces(const std::vector<uint32_t>& own,
+                         const CancelToken& cancel, CoarseMesh& result) {
     Follow(heir_);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     std::vector<std::pair<Triangle, uint32_t>> sorted;
     sorted.reserve(live_.size());
     for (uint32_t f : live_) {
@@ -314,7 +328,8 @@ class Coarsener {
                   face.end());
       sorted.push_back({face, f});
     }
-    std::sort(sorted.begin(), sorted.end());
+    MARROW_RETURN_IF_ERROR(SortUnlessCancelled(sorted.begin(), sorted.end(),
+                                               std::less<>(), cancel));
     result.coarse_face.assign(mesh_.NumFaces(), kNoIndex);
     for (const auto& [corners, f] : sorted) {
       result.coarse_face[f] = static_cast<uint32_t>(result.faces.size());
@@ -323,6 +338,7 @@ class Coarsener {
     }
     for (uint32_t f = 0; f < heir_.size(); ++f)
       result.coarse_face[f] = result.coarse_face[heir_[f]];
+    return absl::OkStatus();
   }
 
   const TriangleMesh& mesh_;
@@ -340,21 +356,27 @@ class Coarsener {
   std::vector<uint32_t> star_;
 };
 
+absl::StatusOr<CoarseMesh> CoarsenUnlessCancelled(const TriangleMesh& mesh,
+                                                  uint32_t num_vertices,
+                                                  const CancelToken& cancel) {
+  Coarsener coarsener(mesh);
+  for (const ShapeLimits& limits : kShapeLimits)
+    for (int round = 0;
+         round < kMostRounds && coarsener.num_vertices() > num_vertices;
+         ++round) {
+      const uint32_t before = coarsener.num_vertices();
+      MARROW_RETURN_IF_ERROR(coarsener.Round(num_vertices, limits, cancel));
+      if (before - coarsener.num_vertices() < kLeastGain * before) break;
+    }
+  return coarsener.Take(cancel);
+}
+
 }  // namespace
 
 CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices,
                    const CancelToken& cancel) {
-  Coarsener coarsener(mesh);
-  for (const ShapeLimits& limits : kShapeLimits)
-    for (int round = 0;
-         round < kMostRounds && coarsener.num_vertices() > num_vertices &&
-         !cancel.IsCancelled();
-         ++round) {
-      const uint32_t before = coarsener.num_vertices();
-      coarsener.Round(num_vertices, limits, cancel);
-      if (before - coarsener.num_vertices() < kLeastGain * before) break;
-    }
-  return coarsener.Take();
+  return CoarsenUnlessCancelled(mesh, num_vertices, cancel)
+      .value_or(CoarseMesh());
 }
 
 }  // namespace marrow

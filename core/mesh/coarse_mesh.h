@@ -37,9 +37,9 @@ struct CoarseMesh {
 // A mesh that is moved, turned, mirrored or scaled has the same coarse mesh,
 // but for some vertices in a hundred where its positions were rounded to float.
 //
-// `mesh` is canonical. Once cancelled, it stops where it is: the result holds,
-// with more vertices. Deterministic; a round is linear in the mesh but for
-// sorting, however many faces a vertex has. Thread safe.
+// `mesh` is canonical. Of no use once cancelled. Deterministic; a round is
+// linear in the mesh but for sorting, however many faces a vertex has. Thread
+// safe.
 CoarseMesh Coarsen(const TriangleMesh& mesh, uint32_t num_vertices,
                    const CancelToken& cancel = CancelToken());
 

@@ -4,6 +4,7 @@
 #include <nanoflann.hpp>
 #include <utility>
 
+#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/rims.h"
@@ -47,24 +48,29 @@ std::vector<double> SquaredReach(const TriangleMesh& mesh,
 
 }  // namespace
 
-std::vector<uint32_t> FindCracks(const TriangleMesh& mesh) {
-  const std::vector<uint32_t> rim = RimVertices(Adjacency(mesh));
+absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
+                                                 const CancelToken& cancel) {
+  const Adjacency adjacency(mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const std::vector<uint32_t> rim = RimVertices(adjacency);
   DisjointSets sets(mesh.NumVertices());
   if (rim.empty()) return sets.Representatives();
   const Positions points = ToUnitBox(mesh).points;
   const std::vector<double> reach = SquaredReach(mesh, points);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   const Cloud cloud{points, rim};
   const nanoflann::KDTreeSingleIndexAdaptor<
       nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
       tree(3, cloud);
   std::vector<std::pair<uint32_t, double>> near;
-  for (uint32_t v : rim) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(rim.size(), cancel, [&](size_t k) {
+    const uint32_t v = rim[k];
     const Eigen::Vector3d place = points.row(v).transpose();
     tree.radiusSearch(place.data(), reach[v], near,
                       nanoflann::SearchParams(32, 0, false));
     for (const auto& [i, square] : near)
       if (square < reach[rim[i]]) sets.Union(v, rim[i]);
-  }
+  }));
   return sets.Representatives();
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -13,8 +15,9 @@ namespace marrow {
 // none. Vertices of rims (edges of one face) are one where they are nearer than
 // 1e-5 of the longest side of the box and than a tenth of the shortest edge at
 // either: what programs leave that write corners apart, and round them.
-// Deterministic, O(n log n), thread safe.
-std::vector<uint32_t> FindCracks(const TriangleMesh& mesh);
+// Deterministic, O(n log n), thread safe. Errors: CANCELLED.
+absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
+                                                 const CancelToken& cancel);
 
 }  // namespace marrow
 

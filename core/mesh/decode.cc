@@ -29,8 +29,11 @@ absl::Status Rejected(const std::string& what) {
   return WithReason(absl::InvalidArgumentError(what), kReasonMeshRejected);
 }
 
+constexpr uint32_t kCheckCancelEvery = 1 << 16;
+
 absl::Status CheckConnectivity(const draco::Mesh& mesh,
-                               const MeshLimits& limits) {
+                               const MeshLimits& limits,
+                               const CancelToken& cancel) {
   const uint32_t points = mesh.num_points();
   if (points > limits.max_vertices) {
     return Rejected(absl::StrCat("the mesh has ", points,
@@ -39,6 +42,7 @@ absl::Status CheckConnectivity(const draco::Mesh& mesh,
                                  "seams split its vertices"));
   }
   for (uint32_t f = 0; f < mesh.num_faces(); ++f) {
+    if (f % kCheckCancelEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(f))) {
       if (corner.value() >= points) {
         return Rejected(absl::StrCat("face ", f, " refers to point ",
@@ -56,8 +60,8 @@ template <typename Base>
 class GuardedDecoder : public Base {
  public:
   GuardedDecoder(std::string_view bytes, DracoMethod method,
-                 const MeshLimits& limits)
-      : bytes_(bytes), method_(method), limits_(limits) {}
+                 const MeshLimits& limits, const CancelToken& cancel)
+      : bytes_(bytes), method_(method), limits_(limits), cancel_(cancel) {}
 
   // Why a guard stopped the decoding; OK where none did.
   const absl::Status& verdict() const { return verdict_; }
@@ -65,7 +69,7 @@ class GuardedDecoder : public Base {
  protected:
   bool DecodePointAttributes() override {
     const size_t offset = this->buffer()->data_head() - bytes_.data();
-    verdict_ = CheckConnectivity(*this->mesh(), limits_);
+    verdict_ = CheckConnectivity(*this->mesh(), limits_, cancel_);
     if (verdict_.ok()) {
       verdict_ = CheckDracoAttributes(bytes_, offset, method_,
                                       this->mesh()->num_points());
@@ -77,13 +81,15 @@ class GuardedDecoder : public Base {
   const std::string_view bytes_;
   const DracoMethod method_;
   const MeshLimits limits_;
+  const CancelToken& cancel_;
   absl::Status verdict_;
 };
 
 template <typename Base>
 absl::Status RunDecoder(std::string_view bytes, DracoMethod method,
-                        const MeshLimits& limits, draco::Mesh& mesh) {
-  GuardedDecoder<Base> decoder(bytes, method, limits);
+                        const MeshLimits& limits, const CancelToken& cancel,
+                        draco::Mesh& mesh) {
+  GuardedDecoder<Base> decoder(bytes, method, limits, cancel);
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   const draco::DecoderOptions options;
@@ -96,19 +102,22 @@ absl::Status RunDecoder(std::string_view bytes, DracoMethod method,
 }
 
 absl::Status RunDecoder(std::string_view bytes, DracoMethod method,
-                        const MeshLimits& limits, draco::Mesh& mesh) {
+                        const MeshLimits& limits, const CancelToken& cancel,
+                        draco::Mesh& mesh) {
   if (method == DracoMethod::kSequential) {
     return RunDecoder<draco::MeshSequentialDecoder>(bytes, method, limits,
-                                                    mesh);
+                                                    cancel, mesh);
   }
-  return RunDecoder<draco::MeshEdgebreakerDecoder>(bytes, method, limits, mesh);
+  return RunDecoder<draco::MeshEdgebreakerDecoder>(bytes, method, limits,
+                                                   cancel, mesh);
 }
 
 // REQUIRES: every value of the attribute is three Scalars, all in its buffer.
 template <typename Scalar>
 absl::Status CopyPositions(const draco::PointAttribute& attribute,
-                           Positions& positions) {
+                           const CancelToken& cancel, Positions& positions) {
   for (Eigen::Index p = 0; p < positions.rows(); ++p) {
+    if (p % kCheckCancelEvery == 0) MARROW_RETURN_IF_ERROR(cancel.Check());
     const draco::AttributeValueIndex value =
         attribute.mapped_index(draco::PointIndex(static_cast<uint32_t>(p)));
     if (value.value() >= attribute.size()) {
@@ -127,7 +136,8 @@ absl::Status CopyPositions(const draco::PointAttribute& attribute,
   return absl::OkStatus();
 }
 
-absl::StatusOr<Positions> ExtractPositions(const draco::Mesh& mesh) {
+absl::StatusOr<Positions> ExtractPositions(const draco::Mesh& mesh,
+                                           const CancelToken& cancel) {
   using draco::GeometryAttribute;
   const draco::PointAttribute* attribute =
       mesh.GetNamedAttribute(GeometryAttribute::POSITION);
@@ -147,40 +157,44 @@ absl::StatusOr<Positions> ExtractPositions(const draco::Mesh& mesh) {
     return Undecodable("POSITION has fewer values than it declares");
   }
   Positions positions(mesh.num_points(), 3);
-  MARROW_RETURN_IF_ERROR(is_double
-                             ? CopyPositions<double>(*attribute, positions)
-                             : CopyPositions<float>(*attribute, positions));
+  MARROW_RETURN_IF_ERROR(
+      is_double ? CopyPositions<double>(*attribute, cancel, positions)
+                : CopyPositions<float>(*attribute, cancel, positions));
   return positions;
 }
 
 absl::StatusOr<DecodedMesh> DecodeOrThrow(std::string_view bytes,
-                                          const MeshLimits& limits) {
+                                          const MeshLimits& limits,
+                                          const CancelToken& cancel) {
   MARROW_ASSIGN_OR_RETURN(const DracoHeader header,
                           ParseDracoHeader(bytes, limits));
   draco::Mesh mesh;
-  MARROW_RETURN_IF_ERROR(RunDecoder(bytes, header.method, limits, mesh));
-  MARROW_RETURN_IF_ERROR(CheckConnectivity(mesh, limits));
+  MARROW_RETURN_IF_ERROR(
+      RunDecoder(bytes, header.method, limits, cancel, mesh));
+  MARROW_RETURN_IF_ERROR(CheckConnectivity(mesh, limits, cancel));
   if (mesh.num_faces() != header.faces) {
     return Undecodable(absl::StrCat("the mesh declares ", header.faces,
                                     " faces but has ", mesh.num_faces()));
   }
   DecodedMesh decoded;
-  MARROW_ASSIGN_OR_RETURN(decoded.positions, ExtractPositions(mesh));
+  MARROW_ASSIGN_OR_RETURN(decoded.positions, ExtractPositions(mesh, cancel));
   decoded.faces.reserve(mesh.num_faces());
   for (uint32_t f = 0; f < mesh.num_faces(); ++f) {
     const draco::Mesh::Face& face = mesh.face(draco::FaceIndex(f));
     decoded.faces.push_back(
         {face[0].value(), face[1].value(), face[2].value()});
   }
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   return decoded;
 }
 
 }  // namespace
 
 absl::StatusOr<DecodedMesh> DecodeDraco(std::string_view bytes,
-                                        const MeshLimits& limits) {
+                                        const MeshLimits& limits,
+                                        const CancelToken& cancel) {
   try {
-    return DecodeOrThrow(bytes, limits);
+    return DecodeOrThrow(bytes, limits, cancel);
   } catch (const std::bad_alloc&) {
     return Undecodable("decoding the mesh takes more memory than there is");
   } catch (const std::exception&) {

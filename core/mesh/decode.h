@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -33,10 +34,11 @@ struct DecodedMesh {
 // The header is parsed and bounded by `limits` before Draco sees the bytes, and
 // indices and coordinates are checked after. Errors are INVALID_ARGUMENT whose
 // message names what is wrong and where (byte, point or face), and which carry
-// the reason DRACO_DECODE_FAILED or MESH_REJECTED (core/base/error_reason.h).
-// Thread safe.
-absl::StatusOr<DecodedMesh> DecodeDraco(std::string_view bytes,
-                                        const MeshLimits& limits);
+// the reason DRACO_DECODE_FAILED or MESH_REJECTED (core/base/error_reason.h);
+// CANCELLED, but not while Draco decodes. Thread safe.
+absl::StatusOr<DecodedMesh> DecodeDraco(
+    std::string_view bytes, const MeshLimits& limits,
+    const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

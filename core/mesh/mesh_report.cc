@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/components.h"
@@ -79,13 +80,15 @@ bool IsSliver(const Vector3d& a, const Vector3d& b, const Vector3d& c,
   return cross < kSineOfOneDegree * edges[1] * edges[2];
 }
 
-void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
+absl::Status MeasureArea(const TriangleMesh& mesh, const CancelToken& cancel,
+                         MeshReport& report) {
   // Below this share of the longest coordinates the rounding of the cross
   // product could hide that the corners are not quite on a line.
   constexpr double kDoubt = 1e-14;
   const double scale = UnitScale(mesh);
   double twice_area = 0;
-  for (const Triangle& face : mesh.faces) {
+  const auto measure = [&](size_t f) {
+    const Triangle& face = mesh.faces[f];
     const Vector3d a = mesh.Position(face[0]) * scale;
     const Vector3d b = mesh.Position(face[1]) * scale;
     const Vector3d c = mesh.Position(face[2]) * scale;
@@ -98,8 +101,10 @@ void MeasureArea(const TriangleMesh& mesh, MeshReport& report) {
     } else {
       twice_area += cross;
     }
-  }
+  };
+  MARROW_RETURN_IF_ERROR(ForEachIndex(mesh.faces.size(), cancel, measure));
   report.area = twice_area / 2 / scale / scale;
+  return absl::OkStatus();
 }
 
 void CountEdges(const Adjacency& adjacency, MeshReport& report) {
@@ -119,50 +124,60 @@ uint32_t CornerOf(const TriangleMesh& mesh, uint32_t f, uint32_t v) {
 
 // Joins the corners of a vertex across each edge that has it; every group that
 // is left is a fan.
-void CountSplitVertices(const TriangleMesh& mesh, const Adjacency& adjacency,
-                        MeshReport& report) {
+absl::Status CountSplitVertices(const TriangleMesh& mesh,
+                                const Adjacency& adjacency,
+                                const CancelToken& cancel, MeshReport& report) {
   DisjointSets fans(3 * mesh.faces.size());
-  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+  const auto join = [&](uint32_t e) {
     const auto faces = adjacency.EdgeFaces(e);
     for (uint32_t v : adjacency.EdgeVertices(e)) {
       for (uint32_t f : faces) {
         fans.Union(CornerOf(mesh, faces[0], v), CornerOf(mesh, f, v));
       }
     }
-  }
+  };
+  MARROW_RETURN_IF_ERROR(ForEachIndex(adjacency.NumEdges(), cancel, join));
   std::vector<uint32_t> fans_of_vertex(mesh.NumVertices(), 0);
-  for (uint32_t corner = 0; corner < 3 * mesh.NumFaces(); ++corner) {
-    if (fans.Find(corner) != corner) continue;
+  return ForEachIndex(3 * mesh.faces.size(), cancel, [&](uint32_t corner) {
+    if (fans.Find(corner) != corner) return;
     if (++fans_of_vertex[mesh.faces[corner / 3][corner % 3]] == 2) {
       ++report.nonmanifold_vertices;
     }
-  }
+  });
 }
 
-}  // namespace
-
-MeshReport ReportOn(const TriangleMesh& mesh) {
-  MeshReport report;
+absl::Status FillReport(const TriangleMesh& mesh, const CancelToken& cancel,
+                        MeshReport& report) {
   report.vertices = mesh.NumVertices();
   report.faces = mesh.NumFaces();
   report.box_min = mesh.positions.colwise().minCoeff().transpose();
   report.box_max = mesh.positions.colwise().maxCoeff().transpose();
-  const Adjacency adjacency(mesh);
-  MeasureArea(mesh, report);
+  const Adjacency adjacency(mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  MARROW_RETURN_IF_ERROR(MeasureArea(mesh, cancel, report));
   CountEdges(adjacency, report);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   DisjointSets vertices(mesh.NumVertices());
   report.components = JoinCorners(mesh, vertices);
-  CountSplitVertices(mesh, adjacency, report);
+  MARROW_RETURN_IF_ERROR(CountSplitVertices(mesh, adjacency, cancel, report));
   report.euler_characteristic = static_cast<int64_t>(report.vertices) -
                                 adjacency.NumEdges() +
                                 static_cast<int64_t>(report.faces);
-  const Orientation orientation = CheckOrientation(mesh, adjacency);
+  const Orientation orientation = CheckOrientation(mesh, adjacency, cancel);
   report.flipped_faces = orientation.flipped_faces;
   report.orientable = orientation.orientable;
   if (report.orientable && report.boundary_edges == 0 &&
       report.nonmanifold_edges == 0 && report.nonmanifold_vertices == 0) {
     report.genus = report.components - report.euler_characteristic / 2;
   }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+MeshReport ReportOn(const TriangleMesh& mesh, const CancelToken& cancel) {
+  MeshReport report;
+  (void)FillReport(mesh, cancel, report);
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -55,9 +56,11 @@ struct MeshReport {
 };
 
 // Fills the members that can be seen from the mesh alone: vertices, faces and
-// everything from zero_area_faces on; the others stay 0.
-// REQUIRES: a face, finite positions, every vertex in a face. Thread safe.
-MeshReport ReportOn(const TriangleMesh& mesh);
+// everything from zero_area_faces on; the others stay 0. Of no use once
+// cancelled. REQUIRES: a face, finite positions, every vertex in a face. Thread
+// safe.
+MeshReport ReportOn(const TriangleMesh& mesh,
+                    const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/cancellable.h"
+
 namespace marrow {
 namespace {
 
@@ -61,16 +63,19 @@ bool RunsAlong(const Triangle& face, uint32_t v, uint32_t w) {
   return false;
 }
 
-ParitySets JoinFaces(const TriangleMesh& mesh, const Adjacency& adjacency) {
+ParitySets JoinFaces(const TriangleMesh& mesh, const Adjacency& adjacency,
+                     const CancelToken& cancel) {
   ParitySets sets(mesh.NumFaces());
-  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+  const auto join = [&](uint32_t e) {
     const auto faces = adjacency.EdgeFaces(e);
-    if (faces.size() != 2) continue;
+    if (faces.size() != 2) return;
     const auto [v, w] = adjacency.EdgeVertices(e);
     sets.Join(faces[0], faces[1],
               RunsAlong(mesh.faces[faces[0]], v, w) ==
                   RunsAlong(mesh.faces[faces[1]], v, w));
-  }
+  };
+  // Once cancelled, what is there will do.
+  (void)ForEachIndex(adjacency.NumEdges(), cancel, join);
   return sets;
 }
 
@@ -100,9 +105,10 @@ std::vector<Eigen::Vector3d> Centers(const TriangleMesh& mesh,
 
 }  // namespace
 
-Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency) {
+Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
+                const CancelToken& cancel) {
   const uint32_t n = mesh.NumFaces();
-  const ParitySets sets = JoinFaces(mesh, adjacency);
+  const ParitySets sets = JoinFaces(mesh, adjacency, cancel);
   Sides sides{std::vector<uint32_t>(n), std::vector<bool>(n), {}};
   std::vector<uint32_t> part(n, kNoIndex);  // by representative, as the next
   std::vector<bool> least_is_turned(n);
@@ -121,8 +127,9 @@ Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency) {
 }
 
 Orientation CheckOrientation(const TriangleMesh& mesh,
-                             const Adjacency& adjacency) {
-  const Sides sides = FindSides(mesh, adjacency);
+                             const Adjacency& adjacency,
+                             const CancelToken& cancel) {
+  const Sides sides = FindSides(mesh, adjacency, cancel);
   Orientation result;
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
     if (sides.is_one_sided[sides.part[f]]) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -24,8 +25,9 @@ struct Sides {
   }
 };
 
-// O(n log n). Deterministic. Thread safe.
-Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency);
+// O(n log n). Deterministic. Of no use once cancelled. Thread safe.
+Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
+                const CancelToken& cancel = CancelToken());
 
 struct Orientation {
   // Of FindSides(). One-sided parts are left out.
@@ -35,7 +37,8 @@ struct Orientation {
 
 // As FindSides().
 Orientation CheckOrientation(const TriangleMesh& mesh,
-                             const Adjacency& adjacency);
+                             const Adjacency& adjacency,
+                             const CancelToken& cancel = CancelToken());
 
 // The faces to turn over so that those of a part agree and face outwards: the
 // volume under them, seen from the mean of their corners, is not negative.

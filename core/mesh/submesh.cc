@@ -7,7 +7,8 @@
 namespace marrow {
 
 Submesh ExtractFaces(const TriangleMesh& mesh,
-                     const std::vector<uint32_t>& faces) {
+                     const std::vector<uint32_t>& faces,
+                     const CancelToken& cancel) {
   std::vector<uint32_t> own(mesh.NumVertices(), kNoIndex);
   for (uint32_t f : faces)
     for (uint32_t v : mesh.faces[f]) own[v] = 0;
@@ -26,7 +27,8 @@ Submesh ExtractFaces(const TriangleMesh& mesh,
     const auto [a, b, c] = mesh.faces[f];
     part.faces.push_back({own[a], own[b], own[c]});
   }
-  result.canonical.report = ReportOn(part);
+  result.canonical.report = ReportOn(part, cancel);
+  if (cancel.IsCancelled()) return result;
   result.canonical.geometry_digest = GeometryDigestOf(part);
   return result;
 }

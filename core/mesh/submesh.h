@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -18,9 +19,11 @@ struct Submesh {
   std::vector<uint32_t> vertices;  // own vertex -> the mesh's, ascending
 };
 
-// `faces` ascending, not empty. `mesh` is canonical. O(n log n). Thread safe.
+// `faces` ascending, not empty. `mesh` is canonical. O(n log n). Of no use
+// once cancelled. Thread safe.
 Submesh ExtractFaces(const TriangleMesh& mesh,
-                     const std::vector<uint32_t>& faces);
+                     const std::vector<uint32_t>& faces,
+                     const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

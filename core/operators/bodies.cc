@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/components.h"
 #include "core/mesh/submesh.h"
@@ -139,9 +140,12 @@ double BoxDiagonal(const TriangleMesh& mesh,
 }
 
 // Rule 2: joins the parts that bridges within the distance connect.
-std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
-                           double& distance) {
-  const Submesh main = ExtractFaces(mesh, AllFacesOf(parts));
+absl::StatusOr<std::vector<Part>> JoinNear(const TriangleMesh& mesh,
+                                           std::vector<Part> parts,
+                                           const CancelToken& cancel,
+                                           double& distance) {
+  const Submesh main = ExtractFaces(mesh, AllFacesOf(parts), cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   distance = BridgingDistance(main.canonical.mesh);
   double widest = 0;
   for (const Part& part : parts)
@@ -152,7 +156,8 @@ std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
     for (uint32_t f : parts[p].faces)
       for (uint32_t v : mesh.faces[f]) part_of_vertex[v] = p;
   DisjointSets sets(static_cast<uint32_t>(parts.size()));
-  for (const auto& [u, v] : SpanningBridges(main.canonical.mesh, distance))
+  for (const auto& [u, v] :
+       SpanningBridges(main.canonical.mesh, distance, cancel))
     sets.Union(part_of_vertex[main.vertices[u]],
                part_of_vertex[main.vertices[v]]);
   std::vector<Part> joined;
@@ -165,6 +170,7 @@ std::vector<Part> JoinNear(const TriangleMesh& mesh, std::vector<Part> parts,
       ++body.components;
     }
     std::sort(body.faces.begin(), body.faces.end());
+    MARROW_RETURN_IF_ERROR(cancel.Check());
   }
   return joined;
 }
@@ -246,9 +252,9 @@ class NearestFace {
 };
 
 // Rule 4. `near` is the bridging distance.
-void Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
-            double near, Bodies& bodies) {
-  if (attached.empty()) return;
+absl::Status Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
+                    double near, const CancelToken& cancel, Bodies& bodies) {
+  if (attached.empty()) return absl::OkStatus();
   std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
   for (const Body& body : bodies.bodies)
     for (size_t i = body.faces.size(); i-- > 0;)
@@ -261,14 +267,20 @@ void Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
   for (const Part& part : attached) {
     double least = std::numeric_limits<double>::infinity();
     uint32_t nearest = bodies.bodies[0].faces[0];
-    for (uint32_t f : part.faces)
-      for (uint32_t v : mesh.faces[f]) faces.Improve(v, least, nearest);
+    const auto improve = [&](size_t i) {
+      for (uint32_t v : mesh.faces[part.faces[i]])
+        faces.Improve(v, least, nearest);
+    };
+    MARROW_RETURN_IF_ERROR(ForEachIndex(part.faces.size(), cancel, improve));
     for (uint32_t f : part.faces) bodies.anchors[f] = nearest;
   }
+  return absl::OkStatus();
 }
 
 // Vertices that are sewn together become one, where the least of them is.
-void Sew(const std::vector<uint32_t>& sewn, Submesh& own, Body& body) {
+// The report is of no use once cancelled.
+void Sew(const std::vector<uint32_t>& sewn, const CancelToken& cancel,
+         Submesh& own, Body& body) {
   TriangleMesh& mesh = own.canonical.mesh;
   std::vector<uint32_t> number(sewn.size());
   uint32_t count = 0;
@@ -288,18 +300,25 @@ void Sew(const std::vector<uint32_t>& sewn, Submesh& own, Body& body) {
   own.vertices.resize(count);
   for (Triangle& face : mesh.faces)
     for (uint32_t& v : face) v = number[v];
-  own.canonical.report = ReportOn(mesh);
+  own.canonical.report = ReportOn(mesh, cancel);
   own.canonical.geometry_digest = GeometryDigestOf(mesh);
 }
 
-Body MakeBody(const TriangleMesh& mesh, Part part) {
-  Submesh own = ExtractFaces(mesh, part.faces);
+absl::StatusOr<Body> MakeBody(const TriangleMesh& mesh, Part part,
+                              const CancelToken& cancel) {
+  Submesh own = ExtractFaces(mesh, part.faces, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   Body body;
   if (part.components > 1) {
     const TriangleMesh& shells = own.canonical.mesh;
-    Sew(SewRims(shells, BridgingDistance(shells)), own, body);
+    const std::vector<uint32_t> sewn =
+        SewRims(shells, BridgingDistance(shells), cancel);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    Sew(sewn, cancel, own, body);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
   }
-  body.bridges = FindBridges(own.canonical.mesh);
+  body.bridges = FindBridges(own.canonical.mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   body.canonical =
       std::make_shared<const CanonicalMesh>(std::move(own.canonical));
   body.faces = std::move(part.faces);
@@ -315,13 +334,13 @@ std::vector<uint32_t> Iota(uint32_t n) {
 }
 
 // Refers to the mesh instead of copying it.
-Body WholeBody(const CanonicalMesh& mesh) {
+Body WholeBody(const CanonicalMesh& mesh, const CancelToken& cancel) {
   Body body;
   body.canonical = std::shared_ptr<const CanonicalMesh>(
       std::shared_ptr<const CanonicalMesh>(), &mesh);
   body.faces = Iota(mesh.mesh.NumFaces());
   body.vertices = Iota(mesh.mesh.NumVertices());
-  body.bridges = FindBridges(mesh.mesh);
+  body.bridges = FindBridges(mesh.mesh, cancel);
   return body;
 }
 
@@ -333,6 +352,7 @@ void CoarsenLarge(const CancelToken& cancel, Bodies& bodies,
     const TriangleMesh& mesh = body.canonical->mesh;
     if (mesh.NumVertices() <= kLargeBody) continue;
     CoarseMesh coarse = Coarsen(mesh, kCoarseVertices, cancel);
+    if (cancel.IsCancelled()) return;
     const uint32_t left = coarse.canonical.mesh.NumVertices();
     if (left > mesh.NumVertices() / 2) continue;
     body.coarse = std::make_shared<const CoarseMesh>(std::move(coarse));
@@ -357,20 +377,22 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
 }
 
 // Rules 1 to 5.
-Bodies SortOut(CanonicalMesh& mesh) {
+absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   Bodies result;
   result.anchors = Iota(mesh.mesh.NumFaces());
   if (mesh.report.components == 1) {
     mesh.report.bodies = 1;
     mesh.report.body_vertices = mesh.mesh.NumVertices();
-    result.bodies.push_back(WholeBody(mesh));
+    result.bodies.push_back(WholeBody(mesh, cancel));
     return result;
   }
   std::vector<Part> parts, scenery;
   PartsOf(mesh.mesh, parts, scenery);
   std::vector<Part> attached = Split(parts, CountOfWeight(parts));
   double distance = 0;
-  parts = JoinNear(mesh.mesh, std::move(parts), distance);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  MARROW_ASSIGN_OR_RETURN(
+      parts, JoinNear(mesh.mesh, std::move(parts), cancel, distance));
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
@@ -378,11 +400,15 @@ Bodies SortOut(CanonicalMesh& mesh) {
   Note(parts, attached, distance, mesh.report);
 
   if (parts.size() == 1 && attached.empty() && parts[0].components == 1) {
-    result.bodies.push_back(WholeBody(mesh));
+    result.bodies.push_back(WholeBody(mesh, cancel));
   } else {
-    for (Part& part : parts)
-      result.bodies.push_back(MakeBody(mesh.mesh, std::move(part)));
-    Attach(mesh.mesh, attached, distance, result);
+    for (Part& part : parts) {
+      MARROW_ASSIGN_OR_RETURN(Body body,
+                              MakeBody(mesh.mesh, std::move(part), cancel));
+      result.bodies.push_back(std::move(body));
+    }
+    MARROW_RETURN_IF_ERROR(
+        Attach(mesh.mesh, attached, distance, cancel, result));
   }
   mesh.report.bridges = mesh.report.body_vertices = 0;
   double sum = 0;
@@ -398,9 +424,10 @@ Bodies SortOut(CanonicalMesh& mesh) {
 }  // namespace
 
 Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
-  Bodies result = SortOut(mesh);
-  CoarsenLarge(cancel, result, mesh.report);
-  return result;
+  absl::StatusOr<Bodies> result = SortOut(mesh, cancel);
+  if (!result.ok()) return {};
+  CoarsenLarge(cancel, *result, mesh.report);
+  return *std::move(result);
 }
 
 std::vector<uint32_t> ToWholeVertices(const Body& body,

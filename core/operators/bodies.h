@@ -88,8 +88,8 @@ struct Bodies {
 };
 
 // Takes the rules above to a mesh, and notes in its report what came of them.
-// Deterministic, O(n log^2 n). Once cancelled, large bodies may have no coarse
-// mesh. Thread safe.
+// Deterministic, O(n log^2 n). Neither the result nor what is noted is of use
+// once cancelled. Thread safe.
 Bodies FindBodies(CanonicalMesh& mesh,
                   const CancelToken& cancel = CancelToken());
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/operators/bridges.h"
 
@@ -32,10 +33,11 @@ struct Candidate {
 // large bodies far apart would cost the square of their size.
 class BodyTree {
  public:
-  explicit BodyTree(Positions points)
+  // Not balanced, and slow to search, once cancelled.
+  BodyTree(Positions points, const CancelToken& cancel)
       : points_(std::move(points)), order_(points_.rows()) {
     std::iota(order_.begin(), order_.end(), 0u);
-    Build(0, static_cast<uint32_t>(order_.size()));
+    Build(0, static_cast<uint32_t>(order_.size()), cancel);
   }
 
   // `body` must outlive the searches.
@@ -63,7 +65,7 @@ class BodyTree {
     uint32_t body = kNoIndex;  // kNoIndex where there are several
   };
 
-  uint32_t Build(uint32_t begin, uint32_t end) {
+  uint32_t Build(uint32_t begin, uint32_t end, const CancelToken& cancel) {
     const uint32_t id = static_cast<uint32_t>(nodes_.size());
     Node node{points_.row(order_[begin]), points_.row(order_[begin]), begin,
               end};
@@ -72,7 +74,7 @@ class BodyTree {
       node.high = node.high.cwiseMax(points_.row(order_[i]));
     }
     nodes_.push_back(node);
-    if (end - begin <= kLeafSize) return id;
+    if (end - begin <= kLeafSize || cancel.IsCancelled()) return id;
     int axis;
     (node.high - node.low).maxCoeff(&axis);
     const uint32_t middle = begin + (end - begin) / 2;
@@ -80,8 +82,8 @@ class BodyTree {
                      order_.begin() + end, [&](uint32_t a, uint32_t b) {
                        return points_(a, axis) < points_(b, axis);
                      });
-    Build(begin, middle);
-    const uint32_t right = Build(middle, end);
+    Build(begin, middle, cancel);
+    const uint32_t right = Build(middle, end, cancel);
     nodes_[id].right = right;
     return id;
   }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/components.h"
 #include "core/mesh/unit_box.h"
@@ -33,8 +34,10 @@ double UnitBridgingDistance(const TriangleMesh& mesh, const Positions& points) {
 // The vertices, and points inside coarse faces for which a corner stands.
 class Shells {
  public:
-  Shells(const TriangleMesh& mesh, const Positions& places, double near)
-      : Shells(mesh.NumVertices(), places, PointsInFaces(mesh, places, near)) {}
+  Shells(const TriangleMesh& mesh, const Positions& places, double near,
+         const CancelToken& cancel)
+      : Shells(mesh.NumVertices(), places, PointsInFaces(mesh, places, near),
+               cancel) {}
 
   uint32_t NumPoints() const { return static_cast<uint32_t>(vertex_.size()); }
   // `body` of each vertex. To be called before the searches below.
@@ -54,8 +57,9 @@ class Shells {
   }
 
  private:
-  Shells(uint32_t vertices, const Positions& places, const FacePoints& inside)
-      : vertex_(vertices), tree_(Together(places, inside.places)) {
+  Shells(uint32_t vertices, const Positions& places, const FacePoints& inside,
+         const CancelToken& cancel)
+      : vertex_(vertices), tree_(Together(places, inside.places), cancel) {
     std::iota(vertex_.begin(), vertex_.end(), 0u);
     vertex_.insert(vertex_.end(), inside.corner.begin(), inside.corner.end());
   }
@@ -74,26 +78,29 @@ class Shells {
 // Every body but the largest looks for its nearest neighbour: the largest is
 // found by others, and its many points need not search.
 std::vector<Candidate> NearestBodies(const Shells& shells, uint32_t vertices,
-                                     double longest_square) {
+                                     double longest_square,
+                                     const CancelToken& cancel) {
   std::vector<uint32_t> size(vertices, 0);
   for (uint32_t i = 0; i < shells.NumPoints(); ++i) ++size[shells.BodyOf(i)];
   const uint32_t largest = static_cast<uint32_t>(
       std::max_element(size.begin(), size.end()) - size.begin());
   std::vector<Candidate> best(vertices, {longest_square});
-  for (uint32_t i = 0; i < shells.NumPoints(); ++i)
+  (void)ForEachIndex(shells.NumPoints(), cancel, [&](uint32_t i) {
     if (shells.BodyOf(i) != largest) shells.Improve(i, best[shells.BodyOf(i)]);
+  });
   return best;
 }
 
 // Every round joins each body to its nearest, so there are O(log n).
 std::vector<Bridge> Span(Shells& shells, DisjointSets sets, uint32_t vertices,
-                         uint32_t bodies, double longest_square) {
+                         uint32_t bodies, double longest_square,
+                         const CancelToken& cancel) {
   std::vector<Bridge> bridges;
-  for (bool joined = true; joined && bodies > 1;) {
+  for (bool joined = true; joined && bodies > 1 && !cancel.IsCancelled();) {
     joined = false;
     shells.SetBodies(sets.Representatives());
     std::vector<Candidate> best =
-        NearestBodies(shells, vertices, longest_square);
+        NearestBodies(shells, vertices, longest_square, cancel);
     std::sort(best.begin(), best.end());
     for (const Candidate& candidate : best) {
       if (!candidate.IsBridge()) continue;
@@ -115,33 +122,38 @@ double BridgingDistance(const TriangleMesh& mesh) {
   return box.unit * UnitBridgingDistance(mesh, box.points);
 }
 
-std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest) {
+std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest,
+                                    const CancelToken& cancel) {
   const uint32_t n = mesh.NumVertices();
   DisjointSets sets(n);
   const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
   const UnitPoints box = ToUnitBox(mesh);
   longest /= box.unit;
-  Shells shells(mesh, box.points, UnitBridgingDistance(mesh, box.points));
-  return Span(shells, sets, n, components, longest * longest);
+  Shells shells(mesh, box.points, UnitBridgingDistance(mesh, box.points),
+                cancel);
+  return Span(shells, sets, n, components, longest * longest, cancel);
 }
 
-std::vector<Bridge> FindBridges(const TriangleMesh& mesh) {
+std::vector<Bridge> FindBridges(const TriangleMesh& mesh,
+                                const CancelToken& cancel) {
   const uint32_t n = mesh.NumVertices();
   DisjointSets sets(n);
   const uint32_t components = JoinCorners(mesh, sets);
   if (components == 1) return {};
   const UnitPoints box = ToUnitBox(mesh);
   const double near = UnitBridgingDistance(mesh, box.points);
-  Shells shells(mesh, box.points, near);
-  std::vector<Bridge> bridges = Span(shells, sets, n, components,
-                                     std::numeric_limits<double>::infinity());
+  Shells shells(mesh, box.points, near, cancel);
+  std::vector<Bridge> bridges =
+      Span(shells, sets, n, components, std::numeric_limits<double>::infinity(),
+           cancel);
+  if (cancel.IsCancelled()) return bridges;
   shells.SetBodies(sets.Representatives());
-  for (uint32_t i = 0; i < shells.NumPoints(); ++i) {
+  (void)ForEachIndex(shells.NumPoints(), cancel, [&](uint32_t i) {
     Candidate nearest{near * near};
     shells.Improve(i, nearest);
     if (nearest.IsBridge()) bridges.push_back(shells.BridgeOf(nearest));
-  }
+  });
   std::sort(bridges.begin(), bridges.end());
   bridges.erase(std::unique(bridges.begin(), bridges.end()), bridges.end());
   return bridges;

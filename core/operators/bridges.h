@@ -3,7 +3,8 @@
 //
 // All functions are deterministic and take about O(n log^2 n) where, as in a
 // canonical mesh, no two vertices share their place. Components are connected
-// through shared vertices. Thread safe.
+// through shared vertices. What they give is of no use once cancelled. Thread
+// safe.
 #ifndef MARROW_CORE_OPERATORS_BRIDGES_H_
 #define MARROW_CORE_OPERATORS_BRIDGES_H_
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -33,14 +35,16 @@ double BridgingDistance(const TriangleMesh& mesh);
 // their corners stand, without the bridges longer than `longest`, in units of
 // the positions (Boruvka's rounds over a k-d tree). Of equally near pairs the
 // least counts. Ascending; empty for a mesh in one piece.
-std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest);
+std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest,
+                                    const CancelToken& cancel = CancelToken());
 
 // What the operator adds: the whole spanning tree, and a bridge from every
 // point to the nearest point of another component within BridgingDistance().
 // So two shells share as many bridges as the zone where they are near has
 // vertices, and a limb that is a shell of its own conducts as one that has
 // grown on. Ascending.
-std::vector<Bridge> FindBridges(const TriangleMesh& mesh);
+std::vector<Bridge> FindBridges(const TriangleMesh& mesh,
+                                const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

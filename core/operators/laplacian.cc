@@ -256,7 +256,7 @@ Eigen::VectorXd Masses(const Eigen::VectorXd& areas) {
 
 absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
                                 const CancelToken& cancel) {
-  const Adjacency adjacency(mesh);
+  const Adjacency adjacency(mesh, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   std::optional<Stencil> stencil = PlainStencil(mesh, adjacency);
   if (!stencil) {
@@ -265,7 +265,7 @@ absl::StatusOr<Laplacian> Build(const TriangleMesh& mesh,
   MARROW_RETURN_IF_ERROR(cancel.Check());
   for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
     stencil->report.nonmanifold_edges += adjacency.EdgeFaces(e).size() > 2;
-  for (const Bridge& ends : FindBridges(mesh))
+  for (const Bridge& ends : FindBridges(mesh, cancel))
     stencil->edges.push_back({ends, kBridgeWeight});
   MARROW_RETURN_IF_ERROR(cancel.Check());
   Merge(stencil->edges);

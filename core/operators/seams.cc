@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
+#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/components.h"
@@ -16,10 +17,10 @@ namespace {
 
 // For each of the rim's vertices the place in `rim` of the nearest one of
 // another component; its own place where there is none.
-std::vector<uint32_t> NearestAcross(const TriangleMesh& mesh,
-                                    const std::vector<uint32_t>& rim,
-                                    const std::vector<uint32_t>& component,
-                                    double longest) {
+absl::StatusOr<std::vector<uint32_t>> NearestAcross(
+    const TriangleMesh& mesh, const std::vector<uint32_t>& rim,
+    const std::vector<uint32_t>& component, double longest,
+    const CancelToken& cancel) {
   const UnitPoints box = ToUnitBox(mesh);
   Positions points(rim.size(), 3);
   std::vector<uint32_t> body(rim.size());
@@ -27,17 +28,17 @@ std::vector<uint32_t> NearestAcross(const TriangleMesh& mesh,
     points.row(i) = box.points.row(rim[i]);
     body[i] = component[rim[i]];
   }
-  BodyTree tree(std::move(points));
+  BodyTree tree(std::move(points), cancel);
   tree.SetBodies(body);
   const double reach = longest / box.unit;
   std::vector<uint32_t> across(rim.size());
-  for (uint32_t i = 0; i < rim.size(); ++i) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(rim.size(), cancel, [&](uint32_t i) {
     Candidate nearest{reach * reach};
     tree.Improve(i, nearest);
     across[i] = !nearest.IsBridge()    ? i
                 : nearest.ends[0] == i ? nearest.ends[1]
                                        : nearest.ends[0];
-  }
+  }));
   return across;
 }
 
@@ -74,15 +75,20 @@ class Seams {
 
 }  // namespace
 
-std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest) {
-  const std::vector<uint32_t> rim = RimVertices(Adjacency(mesh));
+std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
+                              const CancelToken& cancel) {
+  const Adjacency adjacency(mesh, cancel);
+  if (cancel.IsCancelled()) return {};
+  const std::vector<uint32_t> rim = RimVertices(adjacency);
   DisjointSets components(mesh.NumVertices());
   JoinCorners(mesh, components);
   const std::vector<uint32_t> component = components.Representatives();
   Seams seams(component);
   if (rim.empty()) return seams.Representatives();
-  const std::vector<uint32_t> across =
-      NearestAcross(mesh, rim, component, longest);
+  const absl::StatusOr<std::vector<uint32_t>> nearest =
+      NearestAcross(mesh, rim, component, longest, cancel);
+  if (!nearest.ok()) return {};
+  const std::vector<uint32_t>& across = *nearest;
   for (bool mutual : {true, false})
     for (uint32_t i = 0; i < rim.size(); ++i)
       if (across[i] != i && (across[across[i]] == i) == mutual)

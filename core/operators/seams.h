@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -17,7 +18,9 @@ namespace marrow {
 // cut off along a joint grow on again, and the surface goes through the joint
 // as if it had never been cut. Components are connected through shared
 // vertices. Deterministic, O(n log^2 n), thread safe.
-std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest);
+// Of no use once cancelled.
+std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
+                              const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 
