@@ -17,8 +17,8 @@ namespace marrow {
 
 // The functions are called on many threads at a time.
 struct Engine {
-  std::function<absl::StatusOr<CanonicalMesh>(std::string_view,
-                                              const MeshLimits&)>
+  std::function<absl::StatusOr<CanonicalMesh>(
+      std::string_view, const MeshLimits&, const CancelToken&)>
       load_mesh = LoadMesh;
   std::function<absl::Status(std::string_view, const MeshLimits&,
                              const SegmentationOptions&, EigenPairSource&,

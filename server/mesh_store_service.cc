@@ -61,9 +61,10 @@ absl::StatusOr<Inspection> ParseInspection(
   return inspection;
 }
 
-// Whether a Segment call would need no solver.
-bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count) {
-  const Bodies bodies = FindBodies(mesh);
+// Whether a Segment call would need no solver. Of no use once cancelled.
+bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count,
+              const CancelToken& cancel) {
+  const Bodies bodies = FindBodies(mesh, cancel);
   return std::all_of(bodies.bodies.begin(), bodies.bodies.end(),
                      [&](const Body& body) {
                        return context.spectra.Contains(
@@ -72,13 +73,16 @@ bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count) {
 }
 
 absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
-                                                const Inspection& inspection) {
-  MARROW_ASSIGN_OR_RETURN(CanonicalMesh mesh, context.engine.load_mesh(
-                                                  *inspection.payload.bytes,
-                                                  context.options.mesh_limits));
+                                                const Inspection& inspection,
+                                                const CancelToken& cancel) {
+  MARROW_ASSIGN_OR_RETURN(
+      CanonicalMesh mesh,
+      context.engine.load_mesh(*inspection.payload.bytes,
+                               context.options.mesh_limits, cancel));
   const uint32_t count = inspection.eigen_pairs;
   v1::InspectMeshResponse response;
-  response.set_spectrum_cached(IsCached(context, mesh, count));
+  response.set_spectrum_cached(IsCached(context, mesh, count, cancel));
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   SetMeshReport(mesh.report, response.mutable_report());
   SetPrediction(mesh.report, count, response.mutable_report());
   SetMeshDigest(inspection.payload.digest, response.mutable_mesh_digest());
@@ -125,7 +129,7 @@ grpc::ServerUnaryReactor* MeshStoreService::InspectMesh(
       [&context = context_, state, inspection = *std::move(inspection)] {
         v1::InspectMeshResponse found;
         const absl::Status status = RunGuarded(*state->cancel(), [&] {
-          auto result = Inspect(context, inspection);
+          auto result = Inspect(context, inspection, *state->cancel());
           if (result.ok()) found = *std::move(result);
           return result.status();
         });

@@ -149,9 +149,10 @@ absl::Status Compute(ServiceContext& context, const Work& work,
   job.Progress(v1::STAGE_MESH, 0);
   MARROW_ASSIGN_OR_RETURN(
       CanonicalMesh loaded,
-      context.engine.load_mesh(*work.payload.bytes,
-                               context.options.mesh_limits));
+      context.engine.load_mesh(*work.payload.bytes, context.options.mesh_limits,
+                               *job.cancel()));
   (void)FindBodies(loaded, *job.cancel());  // for the report
+  MARROW_RETURN_IF_ERROR(job.cancel()->Check());
   auto mesh = std::make_shared<const CanonicalMesh>(std::move(loaded));
   const Clock::time_point loaded_at = Clock::now();
   job.Progress(v1::STAGE_SPECTRUM, kMeshShare);

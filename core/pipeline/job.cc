@@ -21,10 +21,11 @@ absl::Status Reporter::Progress(Stage stage, double fraction) {
   return Took(sink_.OnProgress(stage, fraction_));
 }
 
-Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies) {
+Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies,
+                 const CancelToken& cancel) {
   Prepared prepared{canonical,
                     bodies,
-                    Adjacency(canonical.mesh),
+                    Adjacency(canonical.mesh, cancel),
                     FaceAreaShares(canonical.mesh),
                     {}};
   for (const Body& body : bodies.bodies) {

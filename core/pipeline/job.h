@@ -51,7 +51,9 @@ struct Prepared {
   std::vector<double> areas;  // shares of the mesh's
   std::vector<Bridge> bridges;
 };
-Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies);
+// Of no use once cancelled.
+Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies,
+                 const CancelToken& cancel);
 
 // What is computed on of a body, ready to be split. Where that is the whole
 // mesh, what is prepared is used again, so `prepared` and the body must outlive

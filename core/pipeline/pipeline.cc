@@ -12,10 +12,11 @@
 namespace marrow {
 
 absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
-                                       const MeshLimits& limits) {
+                                       const MeshLimits& limits,
+                                       const CancelToken& cancel) {
   MARROW_ASSIGN_OR_RETURN(const DecodedMesh decoded,
-                          DecodeDraco(draco_bytes, limits));
-  return Canonicalize(decoded);
+                          DecodeDraco(draco_bytes, limits, cancel));
+  return Canonicalize(decoded, cancel);
 }
 
 std::vector<uint32_t> PointOfVertex(const CanonicalMesh& mesh) {
@@ -35,18 +36,20 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kMesh, 0));
   const auto workspace = std::make_shared<Workspace>();
   CanonicalMesh& canonical = workspace->canonical;
-  MARROW_ASSIGN_OR_RETURN(canonical, LoadMesh(draco_bytes, limits));
+  MARROW_ASSIGN_OR_RETURN(canonical, LoadMesh(draco_bytes, limits, cancel));
   const Bodies& bodies = workspace->bodies = FindBodies(canonical, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   MARROW_RETURN_IF_ERROR(reporter.Took(sink.OnMesh(canonical)));
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
   const Prepared& prepared =
-      workspace->prepared.emplace(Prepare(canonical, bodies));
+      workspace->prepared.emplace(Prepare(canonical, bodies, cancel));
   for (const Body& body : bodies.bodies) {
+    MARROW_RETURN_IF_ERROR(cancel.Check());
     const uint32_t most = PairsOfBody(body, options.eigen_pairs);
     workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
         prepared, body, most, pairs.Open(body.Computed(), most)));
   }
+  MARROW_RETURN_IF_ERROR(cancel.Check());
   const Job job{workspace, prepared, workspace->prepared_bodies,
                 options,   cancel,   reporter,
                 sink};

@@ -57,8 +57,9 @@ class Sink {
 };
 
 // DecodeDraco, then Canonicalize.
-absl::StatusOr<CanonicalMesh> LoadMesh(std::string_view draco_bytes,
-                                       const MeshLimits& limits);
+absl::StatusOr<CanonicalMesh> LoadMesh(
+    std::string_view draco_bytes, const MeshLimits& limits,
+    const CancelToken& cancel = CancelToken());
 
 // For each canonical vertex, the least decoded point at it: how a vertex is
 // named in results.
