@@ -19,9 +19,6 @@ constexpr double kStripBreadth = 2;
 constexpr double kNearWidth = 0.25;
 constexpr double kMiddleWidth = 0.5;
 constexpr double kWideWidth = 1;
-// Of the cut's length: what lies between two ends of one loop. Twice as much
-// makes one of what people take for two.
-constexpr double kLongestGap = 0.06;
 // Stand for the length, the share or the growth of what has none.
 constexpr double kLeastLength = 1e-12;
 constexpr double kLeastShare = 1e-12;
@@ -97,8 +94,7 @@ Measures BoundaryMeter::MeasureBoundary(const PieceGraph& graph,
   measures[kSaddleWide] = SaddleAlong(cut, kWideWidth * cut.radius);
   MeasureStrips(cut, measures);
   measures[kLargestLoop] =
-      LargestLoopShare(adjacency_, unit_, rim_of_vertex_, cut.edges,
-                       OtherCutsOfSmaller(cut), kLongestGap);
+      LargestLoopShare(adjacency_, unit_, rim_of_vertex_, cut.edges);
   return measures;
 }
 
@@ -115,18 +111,6 @@ double BoundaryMeter::SaddleAlong(const Cut& cut, double width) const {
     saddle += EdgeLength(a, b) * Logistic((kSaddle - scaled) / kSaddleSpread);
   }
   return saddle / cut.length;
-}
-
-std::vector<uint32_t> BoundaryMeter::OtherCutsOfSmaller(const Cut& cut) {
-  std::vector<uint32_t> others;
-  const auto [smaller, larger] = cut.groups;
-  for (uint32_t third : cut.graph.Neighbours(smaller)) {
-    if (third == larger) continue;
-    const PieceGraph::Boundary& edges =
-        cut.graph.boundaries().at(std::minmax(smaller, third));
-    others.insert(others.end(), edges.begin(), edges.end());
-  }
-  return others;
 }
 
 void BoundaryMeter::MeasureStrips(const Cut& cut, Measures& measures) {

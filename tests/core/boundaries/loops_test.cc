@@ -37,31 +37,5 @@ TEST(LargestLoopShareTest, IsThatOfTheLongestConnectedPart) {
   EXPECT_DOUBLE_EQ(share(RimOfVertices(adjacency), broken), 1);
 }
 
-TEST(LargestLoopShareTest, GoesOnAcrossAShortGap) {
-  const TriangleMesh mesh = Grid(6, 2);
-  const Adjacency adjacency(mesh);
-  // Up to the middle at x = 1, on from there at x = 2, and what lies between.
-  std::vector<uint32_t> halves, between;
-  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
-    const auto [u, v] = adjacency.EdgeVertices(e);
-    const Eigen::RowVector3d a = mesh.Position(u), b = mesh.Position(v);
-    const Eigen::RowVector3d middle = (a + b) / 2;
-    if (a.x() == b.x() && (middle.head<2>() == Eigen::RowVector2d(1, 0.5) ||
-                           middle.head<2>() == Eigen::RowVector2d(2, 1.5)))
-      halves.push_back(e);
-    if (middle.head<2>() == Eigen::RowVector2d(1.5, 1)) between.push_back(e);
-  }
-  ASSERT_EQ(halves.size(), 2u);
-  ASSERT_EQ(between.size(), 1u);
-  std::vector<uint32_t> no_rims(mesh.NumVertices());
-  std::iota(no_rims.begin(), no_rims.end(), 0u);
-  const auto share = [&](double longest_gap) {
-    return LargestLoopShare(adjacency, mesh.positions, no_rims, halves, between,
-                            longest_gap);
-  };
-  EXPECT_DOUBLE_EQ(share(0.4), 0.5);
-  EXPECT_DOUBLE_EQ(share(0.5), 1);
-}
-
 }  // namespace
 }  // namespace marrow
