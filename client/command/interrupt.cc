@@ -45,7 +45,7 @@ void Interrupt::Watch() {
   signal_ = first;
   on_signal_();
   // Whatever reads from a pipe into which nobody writes does not come back.
-  constexpr timespec kPatience{5, 0};
+  constexpr timespec kPatience{2, 0};
   int second = 0;
   do {
     second = sigtimedwait(&signals, nullptr, &kPatience);

@@ -9,7 +9,7 @@
 namespace marrow::client {
 
 // While it lives, the first SIGINT, SIGTERM or SIGHUP calls `on_signal` on a
-// thread of its own. A second one, or five seconds more, end the process at
+// thread of its own. A second one, or two seconds more, end the process at
 // once. Make it before any other thread, and one at a time: it blocks the
 // signals in the calling thread, whose children inherit that.
 class Interrupt {

@@ -51,15 +51,15 @@ double Strength(const Measures& measures);
 // it.
 class BoundaryMeter {
  public:
-  // `face_areas` are shares of the mesh's area, and `share` is the mesh's share
-  // in the area of all bodies.
+  // `face_areas` are shares of the mesh's area; `share` is that area by that of
+  // the largest body, for in a crowd a limb is as much of one as alone.
   BoundaryMeter(const TriangleMesh& mesh, const Adjacency& adjacency,
                 const std::vector<double>& face_areas,
                 const Curvature& curvature, double share = 1);
 
   // The strength of the boundary of two groups: Strength() times
-  // s^2 / (s^2 + kSpeckShare^2), s being the share, in the area of all bodies,
-  // of the smaller group, for people draw no parts of a few faces, and none had
+  // s^2 / (s^2 + kSpeckShare^2), s being the area of the smaller group by that
+  // of the largest body, for people draw no parts of a few faces, and none had
   // a say in the weights. Where no edge has faces of both they are of different
   // shells, and it is s^2 / (s^2 + kShellShare^2), s being the share of the
   // shells of one group, and of the group for which that is less: whoever made
@@ -82,8 +82,8 @@ class BoundaryMeter {
     double radius;
   };
 
-  // Whether so much is a part, 0 to 1; `half` of the area of all bodies is one
-  // as likely as not.
+  // Whether so much is a part, 0 to 1; `half` of the area of the largest body
+  // is one as likely as not.
   double AsPart(double area, double half) const;
   double EdgeLength(uint32_t a, uint32_t b) const;
   // kSaddle* at a width.

@@ -38,7 +38,7 @@ inline constexpr Measures kStrengthWeights = {
 };
 
 // Of the area: a closed shell of so much beside another is as likely a part as
-// not. It is one of the automatic cut from .012 on, and of level 1 from .043.
+// not. It is one of the automatic cut from .012 on, and of level 1 from .032.
 // Not fitted: people were not asked about shells.
 inline constexpr double kShellShare = 0.0087;
 
@@ -47,12 +47,11 @@ inline constexpr double kShellShare = 0.0087;
 inline constexpr double kSpeckShare = 2e-4;
 
 // Levels are the cuts of the merged pieces at these saliences, the same for
-// every mesh. At the first, limbs are whole: a bent knee has up to 0.95. The
-// second is the automatic cut: boundaries that are kept more
+// every mesh. The second is the automatic cut: boundaries that are kept more
 // likely than 2 to 1. From 0.6 to 0.7 the Rand index of unseen categories moves
 // by .001 only. Above, cuts change more with noise and triangles; below, with
 // poses.
-inline constexpr double kLevelSalience[] = {0.96, 0.65, 0.3};
+inline constexpr double kLevelSalience[] = {0.93, 0.65, 0.3};
 inline constexpr double kAutomaticSalience = kLevelSalience[1];
 
 // Pieces are the leaves of the paper's tree of this depth at this kappa.

@@ -85,11 +85,11 @@ std::vector<Part> Split(std::vector<Part>& from, size_t first) {
 
 // The components, with their shares in the area of what is not scenery, each
 // kind largest first.
-void PartsOf(const TriangleMesh& mesh, std::vector<Part>& parts,
-             std::vector<Part>& scenery) {
+void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
+             std::vector<Part>& parts, std::vector<Part>& scenery) {
   const std::vector<double> areas = FaceAreaShares(mesh);
   Groups components = Components(mesh);
-  const std::vector<bool> is_scenery = FindScenery(mesh, components);
+  const std::vector<bool> is_scenery = FindScenery(mesh, components, cancel);
   for (size_t i = 0; i < components.size(); ++i) {
     Part& part = (is_scenery[i] ? scenery : parts).emplace_back();
     part.share = AreaOf(components[i], areas);
@@ -111,8 +111,8 @@ size_t CountOfWeight(const std::vector<Part>& parts) {
     while (count < parts.size() && parts[count].share >= share) ++count;
     return count;
   };
-  const size_t heavy =
-      count_from(std::min(kWeight, kBodyShare * parts[0].share));
+  const size_t heavy = count_from(
+      std::clamp(kBodyShare * parts[0].share, kLightWeight, kWeight));
   double sum = 0;
   for (size_t i = 0; i < heavy; ++i) sum += parts[i].share;
   return sum >= kMainShare ? heavy : count_from(kLightWeight);
@@ -387,7 +387,7 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
     return result;
   }
   std::vector<Part> parts, scenery;
-  PartsOf(mesh.mesh, parts, scenery);
+  PartsOf(mesh.mesh, cancel, parts, scenery);
   std::vector<Part> attached = Split(parts, CountOfWeight(parts));
   double distance = 0;
   MARROW_RETURN_IF_ERROR(cancel.Check());

@@ -5,10 +5,10 @@
 // share of the area of what is not scenery (core/operators/scenery.h): however
 // large the ground that a creature stands on, it makes no difference to the
 // rules. In order:
-//  1. Of weight is a component of at least kWeight, or kBodyShare of the
-//     largest. Where those hold less than kMainShare of the area (a creature of
-//     scales or plates, not one with a body under its hair), of at least
-//     kLightWeight; the largest always is.
+//  1. Of weight is a component of at least kWeight, or of kBodyShare of the
+//     largest if that is less, but at least kLightWeight. Where those hold less
+//     than kMainShare of the area (a creature of scales or plates, not one with
+//     a body under its hair), of at least kLightWeight; the largest always is.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
 //     weight, nor than kBridgedGap of the widest (a row of creatures is wide,
 //     and no creature for that), are one body, through any number of others. A
@@ -44,7 +44,7 @@ inline constexpr double kLightWeight = 1e-4;
 inline constexpr double kMainShare = 0.05;
 inline constexpr double kBridgedGap = 0.1;
 inline constexpr double kBodyShare = 0.05;
-inline constexpr uint32_t kMaxBodies = 256;
+inline constexpr uint32_t kMaxBodies = 128;
 inline constexpr double kSceneryShare = 0.05;
 inline constexpr uint32_t kLargeBody = 80'000;
 inline constexpr uint32_t kCoarseVertices = 40'000;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace marrow {
 namespace {
@@ -68,10 +69,12 @@ class SceneryFinder {
         components_(components),
         // Squares of coordinates must neither overflow nor vanish.
         unit_(mesh.positions / mesh.positions.cwiseAbs().maxCoeff()),
+        taken_(mesh.NumVertices(), 0),
         is_scenery_(components.size(), false) {}
 
-  std::vector<bool> Find() {
-    for (uint32_t c : Widest()) {
+  std::vector<bool> Find(const CancelToken& cancel) {
+    for (uint32_t c : Widest(cancel)) {
+      if (cancel.IsCancelled()) break;
       if (!IsScenery(c)) break;
       is_scenery_[c] = true;
     }
@@ -79,22 +82,20 @@ class SceneryFinder {
   }
 
  private:
-  Extent ExtentOf(const std::vector<uint32_t>& faces) const {
+  Extent ExtentOf(const std::vector<uint32_t>& faces) {
+    ++asked_;
     std::vector<uint32_t> vertices;
     for (uint32_t f : faces)
-      vertices.insert(vertices.end(), mesh_.faces[f].begin(),
-                      mesh_.faces[f].end());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()),
-                   vertices.end());
+      for (uint32_t v : mesh_.faces[f])
+        if (std::exchange(taken_[v], asked_) != asked_) vertices.push_back(v);
     return Extent(unit_, std::move(vertices));
   }
 
   // Some components, by falling radius.
-  std::vector<uint32_t> Widest() const {
-    std::vector<double> radius;
-    for (const auto& faces : components_)
-      radius.push_back(ExtentOf(faces).radius());
+  std::vector<uint32_t> Widest(const CancelToken& cancel) {
+    std::vector<double> radius(components_.size(), 0);
+    for (size_t c = 0; c < components_.size() && !cancel.IsCancelled(); ++c)
+      radius[c] = ExtentOf(components_[c]).radius();
     std::vector<uint32_t> order(components_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
@@ -104,7 +105,7 @@ class SceneryFinder {
     return order;
   }
 
-  bool IsScenery(uint32_t c) const {
+  bool IsScenery(uint32_t c) {
     std::vector<uint32_t> others;
     for (uint32_t i = 0; i < components_.size(); ++i)
       if (i != c && !is_scenery_[i])
@@ -122,6 +123,8 @@ class SceneryFinder {
   const TriangleMesh& mesh_;
   const std::vector<std::vector<uint32_t>>& components_;
   const Positions unit_;
+  std::vector<uint32_t> taken_;  // vertex -> when it was asked for last
+  uint32_t asked_ = 0;
   std::vector<bool> is_scenery_;
 };
 
@@ -129,9 +132,10 @@ class SceneryFinder {
 
 std::vector<bool> FindScenery(
     const TriangleMesh& mesh,
-    const std::vector<std::vector<uint32_t>>& components) {
+    const std::vector<std::vector<uint32_t>>& components,
+    const CancelToken& cancel) {
   if (components.size() < 2) return std::vector<bool>(components.size(), false);
-  return SceneryFinder(mesh, components).Find();
+  return SceneryFinder(mesh, components).Find(cancel);
 }
 
 }  // namespace marrow

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
@@ -19,10 +20,12 @@ namespace marrow {
 //    their faces.
 // A limb, a garment or a body under its hair is none of these. There is always
 // a component that is not scenery. Distances are from the mean of the vertices,
-// so that turning, moving and scaling changes nothing. O(n log n).
+// so that turning, moving and scaling changes nothing. Of no use once
+// cancelled. Linear but for sorting the components.
 std::vector<bool> FindScenery(
     const TriangleMesh& mesh,
-    const std::vector<std::vector<uint32_t>>& components);
+    const std::vector<std::vector<uint32_t>>& components,
+    const CancelToken& cancel = CancelToken());
 
 inline constexpr double kScenerySize = 2;
 inline constexpr uint32_t kPlainFaces = 100;

@@ -61,8 +61,8 @@ TEST(BodiesTest, FarShellsAreSeveralTheLargestFirst) {
   EXPECT_NEAR(bodies.bodies[0].share, 0.8, 1e-9);
   EXPECT_NEAR(bodies.bodies[1].share, 0.2, 1e-9);
   EXPECT_EQ(PairsOfBody(bodies.bodies[0], 200), 160u);
-  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 200), 40u);
-  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 50), 30u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 500), 100u);
+  EXPECT_EQ(PairsOfBody(bodies.bodies[1], 200), 60u);
   EXPECT_EQ(PairsOfBody(bodies.bodies[1], 10), 10u);
   std::vector<uint32_t> faces = bodies.bodies[0].faces;
   faces.insert(faces.end(), bodies.bodies[1].faces.begin(),
