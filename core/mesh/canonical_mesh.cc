@@ -194,7 +194,14 @@ void TurnOver(const std::vector<bool>& turned, CanonicalMesh& result) {
     if (turned[f]) std::swap(faces[f][1], faces[f][2]);
     sorted.push_back({faces[f], f});
   }
-  std::sort(sorted.begin(), sorted.end());
+  // The first corner is still the least: faces with the same stay together.
+  for (auto run = sorted.begin(); run != sorted.end();) {
+    const auto end = std::find_if(run, sorted.end(), [&](const auto& face) {
+      return face.first[0] != run->first[0];
+    });
+    std::sort(run, end);
+    run = end;
+  }
   std::vector<uint32_t> now(faces.size());
   for (uint32_t f = 0; f < sorted.size(); ++f) {
     faces[f] = sorted[f].first;
