@@ -349,7 +349,9 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
   const Sides sides =
       FindSides(result.mesh, Adjacency(result.mesh, cancel), cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  TurnOver(FacesInward(result.mesh, sides), result);
+  const std::vector<bool> turned = FacesInward(result.mesh, sides);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  TurnOver(turned, result);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   result.report = ReportOn(result.mesh, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());

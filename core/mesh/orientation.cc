@@ -74,7 +74,6 @@ ParitySets JoinFaces(const TriangleMesh& mesh, const Adjacency& adjacency,
               RunsAlong(mesh.faces[faces[0]], v, w) ==
                   RunsAlong(mesh.faces[faces[1]], v, w));
   };
-  // Once cancelled, what is there will do.
   (void)ForEachIndex(adjacency.NumEdges(), cancel, join);
   return sets;
 }
@@ -109,6 +108,7 @@ Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
                 const CancelToken& cancel) {
   const uint32_t n = mesh.NumFaces();
   const ParitySets sets = JoinFaces(mesh, adjacency, cancel);
+  if (cancel.IsCancelled()) return {};
   Sides sides{std::vector<uint32_t>(n), std::vector<bool>(n), {}};
   std::vector<uint32_t> part(n, kNoIndex);  // by representative, as the next
   std::vector<bool> least_is_turned(n);
@@ -122,7 +122,7 @@ Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
     sides.part[f] = part[set];
     sides.is_turned[f] = is_turned != least_is_turned[set];
   }
-  TurnTheFewer(sides);
+  if (!cancel.IsCancelled()) TurnTheFewer(sides);
   return sides;
 }
 
@@ -130,6 +130,7 @@ Orientation CheckOrientation(const TriangleMesh& mesh,
                              const Adjacency& adjacency,
                              const CancelToken& cancel) {
   const Sides sides = FindSides(mesh, adjacency, cancel);
+  if (cancel.IsCancelled()) return {};
   Orientation result;
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
     if (sides.is_one_sided[sides.part[f]]) {
