@@ -183,7 +183,7 @@ std::vector<bool> Visible(const Samples& samples, const View& view) {
   constexpr int kGrid = 72;
   constexpr float kReach = 1.74f;  // of the corner of a cube of side 2
   constexpr float kTolerance = 0.06f;
-  std::vector<float> depth(kGrid * kGrid,
+  std::vector<float> depth(size_t{kGrid} * kGrid,
                            -std::numeric_limits<float>::infinity());
   std::vector<int> cell;
   std::vector<float> sample_depth;
@@ -229,6 +229,7 @@ std::vector<View> ChooseViews(const Surface& surface, int count) {
   const std::vector<Candidate> candidates =
       Candidates(up, BroadSide(samples, up));
   std::vector<std::vector<bool>> visible;
+  visible.reserve(candidates.size());
   for (const Candidate& candidate : candidates) {
     visible.push_back(Visible(samples, candidate.view));
   }
