@@ -305,17 +305,44 @@ TriangleMesh Bowtie(uint32_t rings) {
   return MeshOf(points, std::move(faces));
 }
 
-TriangleMesh Apart(const TriangleMesh& a, const TriangleMesh& b) {
-  Points points = PointsOf(a);
-  std::vector<Triangle> faces = a.faces;
-  const double shift =
-      1 + a.positions.col(0).maxCoeff() - b.positions.col(0).minCoeff();
-  for (const Eigen::Vector3d& p : PointsOf(b))
-    points.push_back(p + Eigen::Vector3d(shift, 0, 0));
-  const uint32_t n = a.NumVertices();
-  for (const Triangle& f : b.faces)
-    faces.push_back({n + f[0], n + f[1], n + f[2]});
+TriangleMesh Moebius(uint32_t columns) {
+  Points points;
+  std::vector<Triangle> faces;
+  for (uint32_t i = 0; i < columns; ++i) {
+    const double turn = pi * i / columns;
+    for (int j = -1; j <= 1; ++j) {
+      const double out = 1 + 0.3 * j * std::cos(turn);
+      points.push_back({out * std::cos(2 * turn), out * std::sin(2 * turn),
+                        0.3 * j * std::sin(turn)});
+    }
+    const auto next = [&](uint32_t j) {
+      return i + 1 < columns ? 3 * (i + 1) + j : 2 - j;
+    };
+    for (uint32_t j = 0; j < 2; ++j) {
+      faces.push_back({3 * i + j, next(j), next(j + 1)});
+      faces.push_back({3 * i + j, next(j + 1), 3 * i + j + 1});
+    }
+  }
   return MeshOf(points, std::move(faces));
+}
+
+TriangleMesh Together(const std::vector<TriangleMesh>& meshes) {
+  Points points;
+  std::vector<Triangle> faces;
+  for (const TriangleMesh& mesh : meshes) {
+    const auto n = static_cast<uint32_t>(points.size());
+    for (const Eigen::Vector3d& p : PointsOf(mesh)) points.push_back(p);
+    for (const Triangle& f : mesh.faces)
+      faces.push_back({n + f[0], n + f[1], n + f[2]});
+  }
+  return MeshOf(points, std::move(faces));
+}
+
+TriangleMesh Apart(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh moved = b;
+  moved.positions.col(0).array() +=
+      1 + a.positions.col(0).maxCoeff() - b.positions.col(0).minCoeff();
+  return Together({a, moved});
 }
 
 TriangleMesh WithSlivers(const TriangleMesh& mesh, uint32_t step,

@@ -41,6 +41,10 @@ TriangleMesh LimbCross(uint32_t fineness);
 TriangleMesh Book(uint32_t pages, uint32_t rows);
 // Two disks that share one vertex.
 TriangleMesh Bowtie(uint32_t rings);
+// A band with half a turn, of `columns` squares by two.
+TriangleMesh Moebius(uint32_t columns);
+// One mesh of several, each where it is.
+TriangleMesh Together(const std::vector<TriangleMesh>& meshes);
 // One mesh of two, side by side without contact.
 TriangleMesh Apart(const TriangleMesh& a, const TriangleMesh& b);
 // Every `step`-th face is cut in three at a point `height` from the middle of

@@ -12,6 +12,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/core/mesh/draco_fixture.h"
+#include "tests/testing/shapes.h"
 
 namespace marrow {
 namespace {
@@ -275,23 +276,8 @@ TEST(CanonicalMeshTest, FacesBackToBackAreOne) {
 
 // It has no outside, yet is the same whichever way its faces are turned.
 TEST(CanonicalMeshTest, TurningFacesOfAMoebiusStripCannotMatter) {
-  DecodedMesh strip;
-  constexpr uint32_t kLength = 9;
-  for (uint32_t i = 0; i < kLength; ++i) {
-    const bool last = i + 1 == kLength;
-    const uint32_t a = 2 * i, b = a + 1;
-    const uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
-    strip.faces.push_back({a, c, b});
-    strip.faces.push_back({b, c, d});
-  }
-  strip.positions.resize(2 * kLength, 3);
-  for (uint32_t i = 0; i < kLength; ++i)
-    for (const uint32_t side : {0u, 1u}) {
-      const double around = 2 * M_PI * i / kLength, across = side - 0.5;
-      const double radius = 2 + across * std::cos(around / 2);
-      strip.positions.row(2 * i + side) << radius * std::cos(around),
-          radius * std::sin(around), across * std::sin(around / 2);
-    }
+  const TriangleMesh moebius = Moebius(9);
+  const DecodedMesh strip{moebius.positions, moebius.faces};
   const CanonicalMesh expected = Canonical(strip);
   EXPECT_FALSE(expected.report.orientable);
   for (uint32_t seed = 1; seed <= 5; ++seed) {

@@ -33,16 +33,7 @@ TEST(OrientationTest, CountsTheFewerOfEveryComponent) {
 }
 
 TEST(OrientationTest, AMoebiusStripHasNone) {
-  TriangleMesh strip;
-  constexpr uint32_t kLength = 9;
-  strip.positions.setRandom(2 * kLength, 3);
-  for (uint32_t i = 0; i < kLength; ++i) {
-    const bool last = i + 1 == kLength;
-    const uint32_t a = 2 * i, b = a + 1;
-    const uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
-    strip.faces.push_back({a, c, b});
-    strip.faces.push_back({b, c, d});
-  }
+  const TriangleMesh strip = Moebius(9);
   EXPECT_FALSE(Check(strip).orientable);
   EXPECT_EQ(Check(strip).flipped_faces, 0u);
   TriangleMesh both = Apart(strip, Icosphere(1));

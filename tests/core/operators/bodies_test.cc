@@ -17,18 +17,6 @@ TriangleMesh MovedTo(TriangleMesh mesh, double x) {
   return mesh;
 }
 
-TriangleMesh Together(const std::vector<TriangleMesh>& meshes) {
-  TriangleMesh all;
-  for (const TriangleMesh& mesh : meshes) {
-    const uint32_t n = all.NumVertices();
-    all.positions.conservativeResize(n + mesh.NumVertices(), 3);
-    all.positions.bottomRows(mesh.NumVertices()) = mesh.positions;
-    for (const Triangle& f : mesh.faces)
-      all.faces.push_back({n + f[0], n + f[1], n + f[2]});
-  }
-  return all;
-}
-
 TEST(BodiesTest, OnePieceIsItself) {
   CanonicalMesh mesh = CanonicalOf(Icosphere(2));
   const Bodies bodies = FindBodies(mesh);

@@ -91,18 +91,6 @@ TriangleMesh RandomObtuse(uint32_t points, bool closed, uint32_t seed) {
   return MeshOf(all, std::move(mesh.faces));
 }
 
-TriangleMesh Moebius(uint32_t columns) {
-  Points points;
-  for (uint32_t i = 0; i < columns; ++i)
-    for (int j = -1; j <= 1; ++j) {
-      const double turn = static_cast<double>(i) / columns;
-      const double out = 1 + 0.3 * j * std::cos(pi * turn);
-      points.push_back(out * OnCircle(turn) +
-                       Eigen::Vector3d(0, 0, 0.3 * j * std::sin(pi * turn)));
-    }
-  return MeshOf(points, Band(columns, 2, 3, [](uint32_t j) { return 2 - j; }));
-}
-
 TriangleMesh KleinBottle(uint32_t around, uint32_t across) {
   Points points;
   for (uint32_t i = 0; i < around; ++i)

@@ -18,8 +18,6 @@ TriangleMesh AllSlivers(const TriangleMesh& mesh, double angle);
 // A square that is cut at random places and edges: closed if `closed` (then the
 // two sides of a pillow), with angles near 180 degrees.
 TriangleMesh RandomObtuse(uint32_t points, bool closed, uint32_t seed);
-// A band with half a turn, of `columns` squares by two.
-TriangleMesh Moebius(uint32_t columns);
 // The figure-8 immersion, which passes through itself.
 TriangleMesh KleinBottle(uint32_t around, uint32_t across);
 // Triangles that all share one edge, at even angles about it.

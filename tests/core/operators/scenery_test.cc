@@ -10,17 +10,6 @@
 namespace marrow {
 namespace {
 
-// Both where they are.
-TriangleMesh Together(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both = a;
-  both.positions.conservativeResize(a.NumVertices() + b.NumVertices(), 3);
-  both.positions.bottomRows(b.NumVertices()) = b.positions;
-  for (const Triangle& f : b.faces)
-    both.faces.push_back({a.NumVertices() + f[0], a.NumVertices() + f[1],
-                          a.NumVertices() + f[2]});
-  return both;
-}
-
 // A square in z = -height, of that many squares in each direction.
 TriangleMesh Ground(uint32_t squares, double width, double height) {
   TriangleMesh ground = Grid(squares, squares);
@@ -42,7 +31,7 @@ TriangleMesh Box(double width) {
 void ExpectScenery(const TriangleMesh& creature, const TriangleMesh& other) {
   for (double angle : {0.0, 1.0}) {
     CanonicalMesh mesh =
-        CanonicalOf(Rotated(Together(creature, other), {1, 2, 3}, angle));
+        CanonicalOf(Rotated(Together({creature, other}), {1, 2, 3}, angle));
     const Bodies bodies = FindBodies(mesh);
     ASSERT_EQ(bodies.bodies.size(), 2u);
     EXPECT_EQ(bodies.bodies[0].faces.size(), creature.NumFaces());
@@ -52,7 +41,7 @@ void ExpectScenery(const TriangleMesh& creature, const TriangleMesh& other) {
 }
 
 uint32_t CountScenery(const TriangleMesh& a, const TriangleMesh& b) {
-  const TriangleMesh mesh = Together(a, b);
+  const TriangleMesh mesh = Together({a, b});
   std::vector<std::vector<uint32_t>> components(2);
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
     components[f >= a.NumFaces()].push_back(f);
