@@ -112,10 +112,12 @@ std::vector<v1::Finding> FindingsAbout(const MeshReport& report) {
   if (report.bodies > 1) {
     findings.push_back(MakeFinding(
         "SEVERAL_BODIES", report.bodies,
-        absl::StrCat("the mesh is ", report.bodies,
-                     " bodies far from each other; each is segmented on its "
-                     "own, at a scale of its own, and no segment of level 1 or "
-                     "deeper has faces of two")));
+        absl::StrCat(
+            "the mesh is ", report.bodies,
+            " bodies, apart from each other or one the surroundings of "
+            "others; each is segmented on its own, at a scale of its "
+            "own, and no segment of level 1 or deeper has faces of "
+            "two")));
   }
   if (DistanceInExtents(report) > kFarAway) {
     findings.push_back(MakeFinding(

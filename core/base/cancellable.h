@@ -26,7 +26,8 @@ absl::Status ForEachIndex(size_t count, const CancelToken& cancel,
   return absl::OkStatus();
 }
 
-// std::sort, in parts that take milliseconds. `before` is copied. Errors:
+// std::sort that asks the token before every pass over a part, the first of
+// which is over all. `before` is copied. Errors:
 // CANCELLED, with the elements in any order.
 template <typename Iterator, typename Before>
 absl::Status SortUnlessCancelled(Iterator begin, Iterator end,

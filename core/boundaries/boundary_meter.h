@@ -52,7 +52,8 @@ double Strength(const Measures& measures);
 class BoundaryMeter {
  public:
   // `face_areas` are shares of the mesh's area; `share` is that area by that of
-  // the largest body, for in a crowd a limb is as much of one as alone.
+  // the largest body (of scenery less, core/operators/bodies.h), for in a crowd
+  // a limb is as much of one as alone.
   BoundaryMeter(const TriangleMesh& mesh, const Adjacency& adjacency,
                 const std::vector<double>& face_areas,
                 const Curvature& curvature, double share = 1);

@@ -50,7 +50,7 @@ double MeanSquareEdge(const Adjacency& adjacency, const Positions& unit) {
   return sum / adjacency.NumEdges();
 }
 
-// Faces that are turned against the others of their part would cancel them.
+// Shells that were sewn may look opposite ways; their faces would cancel out.
 Positions VertexNormals(const TriangleMesh& mesh, const Adjacency& adjacency,
                         const Positions& unit) {
   const Sides sides = FindSides(mesh, adjacency);

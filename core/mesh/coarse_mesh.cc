@@ -12,6 +12,7 @@
 #include "core/base/cancellable.h"
 #include "core/mesh/mesh_report.h"
 #include "core/mesh/place_factors.h"
+#include "core/mesh/unit_box.h"
 
 namespace marrow {
 namespace {
@@ -71,6 +72,7 @@ class Coarsener {
  public:
   explicit Coarsener(const TriangleMesh& mesh)
       : mesh_(mesh),
+        unit_(mesh.positions * UnitScale(mesh)),
         corners_(mesh.faces),
         live_(mesh.NumFaces()),
         gone_(mesh.NumVertices(), false),
@@ -144,7 +146,7 @@ class Coarsener {
   }
 
   double SquaredLength(uint32_t a, uint32_t b) const {
-    return (mesh_.positions.row(a) - mesh_.positions.row(b)).squaredNorm();
+    return (unit_.row(a) - unit_.row(b)).squaredNorm();
   }
 
   // The vertices with the shortest edges, by these.
@@ -281,8 +283,8 @@ class Coarsener {
   }
 
   Eigen::Vector3d DoubledArea(uint32_t a, uint32_t b, uint32_t c) const {
-    const Eigen::Vector3d corner = mesh_.Position(a);
-    return (mesh_.Position(b) - corner).cross(mesh_.Position(c) - corner);
+    const Eigen::Vector3d to_b = (unit_.row(b) - unit_.row(a)).transpose();
+    return to_b.cross((unit_.row(c) - unit_.row(a)).transpose());
   }
 
   double Quality(double doubled_area, uint32_t a, uint32_t b,
@@ -342,6 +344,7 @@ class Coarsener {
   }
 
   const TriangleMesh& mesh_;
+  const Positions unit_;
   std::vector<Triangle> corners_;  // of each face, as collapsed so far
   std::vector<uint32_t> live_;     // faces that are left, ascending
   std::vector<bool> gone_;         // vertices

@@ -35,7 +35,8 @@ struct CoarseMesh {
 // is connected on the coarse mesh is connected on the fine one.
 //
 // A mesh that is moved, turned, mirrored or scaled has the same coarse mesh,
-// but for some vertices in a hundred where its positions were rounded to float.
+// but for some vertices in a hundred where its positions were rounded to float,
+// and for those that a symmetry of the mesh exchanges.
 //
 // `mesh` is canonical. Of no use once cancelled. Deterministic; a round is
 // linear in the mesh but for sorting, however many faces a vertex has. Thread

@@ -13,6 +13,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/orientation.h"
 #include "core/mesh/rims.h"
+#include "core/mesh/unit_box.h"
 
 namespace marrow {
 namespace {
@@ -60,14 +61,6 @@ bool CollinearInPlane(const Vector3d& a, const Vector3d& b, const Vector3d& c,
 bool Collinear(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return CollinearInPlane(a, b, c, 0, 1) && CollinearInPlane(a, b, c, 1, 2) &&
          CollinearInPlane(a, b, c, 2, 0);
-}
-
-// A power of two that brings the largest coordinate near 1: exact, and squares
-// of what it scales neither overflow nor underflow.
-double UnitScale(const TriangleMesh& mesh) {
-  const double largest = mesh.positions.cwiseAbs().maxCoeff();
-  if (largest == 0) return 1;
-  return std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
 }
 
 // An angle under one degree. The least is opposite to the shortest edge.

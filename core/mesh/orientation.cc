@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/cancellable.h"
+#include "core/mesh/unit_box.h"
 
 namespace marrow {
 namespace {
@@ -90,12 +91,14 @@ void TurnTheFewer(Sides& sides) {
 
 // The mean corner of each part.
 std::vector<Eigen::Vector3d> Centers(const TriangleMesh& mesh,
+                                     const Positions& unit,
                                      const Sides& sides) {
   std::vector<Eigen::Vector3d> centers(sides.NumParts(),
                                        Eigen::Vector3d::Zero());
   std::vector<double> corners(sides.NumParts(), 0);
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    for (uint32_t v : mesh.faces[f]) centers[sides.part[f]] += mesh.Position(v);
+    for (uint32_t v : mesh.faces[f])
+      centers[sides.part[f]] += unit.row(v).transpose();
     corners[sides.part[f]] += 3;
   }
   for (uint32_t i = 0; i < sides.NumParts(); ++i) centers[i] /= corners[i];
@@ -143,15 +146,17 @@ Orientation CheckOrientation(const TriangleMesh& mesh,
 }
 
 std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides) {
-  const std::vector<Eigen::Vector3d> centers = Centers(mesh, sides);
+  const Positions unit = mesh.positions * UnitScale(mesh);
+  const std::vector<Eigen::Vector3d> centers = Centers(mesh, unit, sides);
   // By part, once those that are turned are turned over.
   std::vector<double> volumes(sides.NumParts(), 0);
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
     const Eigen::Vector3d& center = centers[sides.part[f]];
-    const auto [a, b, c] = mesh.faces[f];
+    const auto from_center = [&](int corner) -> Eigen::Vector3d {
+      return unit.row(mesh.faces[f][corner]).transpose() - center;
+    };
     const double volume =
-        (mesh.Position(a) - center)
-            .dot((mesh.Position(b) - center).cross(mesh.Position(c) - center));
+        from_center(0).dot(from_center(1).cross(from_center(2)));
     volumes[sides.part[f]] += sides.is_turned[f] ? -volume : volume;
   }
   std::vector<bool> inward(mesh.NumFaces());

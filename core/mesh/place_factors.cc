@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/mesh/unit_box.h"
+
 namespace marrow {
 namespace {
 
@@ -24,9 +26,10 @@ struct FaceSum {
   Eigen::Vector3d centre;
 };
 
-FaceSum Measure(const TriangleMesh& mesh, const Triangle& face) {
-  const Eigen::Vector3d a = mesh.Position(face[0]), b = mesh.Position(face[1]),
-                        c = mesh.Position(face[2]);
+FaceSum Measure(const Positions& unit, const Triangle& face) {
+  const Eigen::Vector3d a = unit.row(face[0]).transpose();
+  const Eigen::Vector3d b = unit.row(face[1]).transpose();
+  const Eigen::Vector3d c = unit.row(face[2]).transpose();
   return {0.5 * (b - a).cross(c - a).norm(), (a + b + c) / 3};
 }
 
@@ -37,12 +40,12 @@ Eigen::Vector3d Direction(const Eigen::Vector3d& v) {
 
 // The centroid, and two points off it: where the mesh reaches farther out, and
 // that again by its second moments.
-Frame FrameOf(const TriangleMesh& mesh) {
+Frame FrameOf(const std::vector<Triangle>& faces, const Positions& unit) {
   Frame frame;
-  const Eigen::Vector3d origin = mesh.positions.colwise().mean().transpose();
+  const Eigen::Vector3d origin = unit.colwise().mean().transpose();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Triangle& face : mesh.faces) {
-    const FaceSum of = Measure(mesh, face);
+  for (const Triangle& face : faces) {
+    const FaceSum of = Measure(unit, face);
     frame.area += of.area;
     sum += of.area * (of.centre - origin);
   }
@@ -51,8 +54,8 @@ Frame FrameOf(const TriangleMesh& mesh) {
   const double size = std::sqrt(frame.area);
   Eigen::Vector3d reach = Eigen::Vector3d::Zero();
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Triangle& face : mesh.faces) {
-    const FaceSum of = Measure(mesh, face);
+  for (const Triangle& face : faces) {
+    const FaceSum of = Measure(unit, face);
     const Eigen::Vector3d at = (of.centre - centroid) / size;
     const double share = of.area / frame.area;
     reach += share * at.squaredNorm() * at;
@@ -72,7 +75,8 @@ double Wave(double periods) {
 
 std::vector<double> PlaceFactors(const TriangleMesh& mesh, double spread) {
   std::vector<double> factors(mesh.NumVertices(), 1);
-  const Frame frame = FrameOf(mesh);
+  const Positions unit = mesh.positions * UnitScale(mesh);
+  const Frame frame = FrameOf(mesh.faces, unit);
   if (!(frame.area > 0)) return factors;
   // Of an equilateral triangle.
   const double edge =
@@ -80,7 +84,7 @@ std::vector<double> PlaceFactors(const TriangleMesh& mesh, double spread) {
   for (uint32_t v = 0; v < factors.size(); ++v) {
     double wave = 0;
     for (size_t i = 0; i < kWaves.size(); ++i)
-      wave += Wave((mesh.Position(v) - frame.points[i]).norm() /
+      wave += Wave((unit.row(v).transpose() - frame.points[i]).norm() /
                    (kWaves[i] * edge));
     factors[v] = std::pow(1 + spread, wave / kWaves.size());
   }

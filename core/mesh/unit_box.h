@@ -2,9 +2,20 @@
 #ifndef MARROW_CORE_MESH_UNIT_BOX_H_
 #define MARROW_CORE_MESH_UNIT_BOX_H_
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/mesh/triangle_mesh.h"
 
 namespace marrow {
+
+// A power of two that brings the largest coordinate near 1: exact, and squares
+// of what it scales neither overflow nor vanish.
+inline double UnitScale(const TriangleMesh& mesh) {
+  const double largest = mesh.positions.cwiseAbs().maxCoeff();
+  if (largest == 0) return 1;
+  return std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
+}
 
 struct UnitPoints {
   Positions points;

@@ -83,25 +83,26 @@ std::vector<Part> Split(std::vector<Part>& from, size_t first) {
   return rest;
 }
 
-// The components, with their shares in the area of what is not scenery, each
-// kind largest first.
+// The components, each kind largest first. The shares of `parts` are in the
+// area of what is not scenery, those of `scenery` in that of the mesh.
 void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
              std::vector<Part>& parts, std::vector<Part>& scenery) {
   const std::vector<double> areas = FaceAreaShares(mesh);
   Groups components = Components(mesh);
   const std::vector<bool> is_scenery = FindScenery(mesh, components, cancel);
+  double sum = 0;
   for (size_t i = 0; i < components.size(); ++i) {
     Part& part = (is_scenery[i] ? scenery : parts).emplace_back();
     part.share = AreaOf(components[i], areas);
     part.faces = std::move(components[i]);
+    if (!is_scenery[i]) sum += part.share;
   }
-  LargestFirst(parts);
-  LargestFirst(scenery);
-  double sum = 0;
-  for (const Part& part : parts) sum += part.share;
   if (sum > 0)
     for (Part& part : parts) part.share /= sum;
-  for (Part& part : scenery) part.share = kSceneryShare;
+  else  // Nothing is there that it could be the scenery of.
+    for (Part& part : Split(scenery, 0)) parts.push_back(std::move(part));
+  LargestFirst(parts);
+  LargestFirst(scenery);
 }
 
 // Rule 1. REQUIRES: largest first. The number of components of weight.
@@ -188,15 +189,15 @@ size_t CountBodies(const std::vector<Part>& parts) {
 // points inside coarse faces.
 class NearestFace {
  public:
-  // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_attached`, by
-  // face: whether it is of no body.
+  // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_left`, by face:
+  // whether it is of none of them.
   NearestFace(const TriangleMesh& mesh,
               const std::vector<uint32_t>& face_of_vertex,
-              const std::vector<bool>& is_attached, double near)
+              const std::vector<bool>& is_left, double near)
       : unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
         places_(mesh.positions * unit_),
         cloud_(places_, face_of_vertex),
-        tree_(3, Add(mesh, is_attached, near)) {}
+        tree_(3, Add(mesh, is_left, near)) {}
 
   // Lowers `best`, a squared distance, and tells the face where it could.
   void Improve(uint32_t from, double& best, uint32_t& nearest) const {
@@ -231,11 +232,11 @@ class NearestFace {
     std::vector<uint32_t> faces;
   };
 
-  const Cloud& Add(const TriangleMesh& mesh,
-                   const std::vector<bool>& is_attached, double near) {
+  const Cloud& Add(const TriangleMesh& mesh, const std::vector<bool>& is_left,
+                   double near) {
     const FacePoints inside = PointsInFaces(mesh, places_, near * unit_);
     for (uint32_t i = 0; i < inside.face.size(); ++i) {
-      if (is_attached[inside.face[i]]) continue;
+      if (is_left[inside.face[i]]) continue;
       cloud_.places.push_back(inside.places.row(i));
       cloud_.faces.push_back(inside.face[i]);
     }
@@ -251,19 +252,22 @@ class NearestFace {
       tree_;
 };
 
-// Rule 4. `near` is the bridging distance.
+// Rule 4, to the first `count` bodies: the others are scenery. `near` is the
+// bridging distance.
 absl::Status Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
-                    double near, const CancelToken& cancel, Bodies& bodies) {
+                    size_t count, double near, const CancelToken& cancel,
+                    Bodies& bodies) {
   if (attached.empty()) return absl::OkStatus();
   std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
-  for (const Body& body : bodies.bodies)
-    for (size_t i = body.faces.size(); i-- > 0;)
-      for (uint32_t v : mesh.faces[body.faces[i]])
-        first_face[v] = body.faces[i];
-  std::vector<bool> is_attached(mesh.NumFaces(), false);
-  for (const Part& part : attached)
-    for (uint32_t f : part.faces) is_attached[f] = true;
-  const NearestFace faces(mesh, first_face, is_attached, near);
+  std::vector<bool> is_left(mesh.NumFaces(), true);
+  for (size_t b = 0; b < count; ++b) {
+    const std::vector<uint32_t>& faces = bodies.bodies[b].faces;
+    for (size_t i = faces.size(); i-- > 0;) {
+      is_left[faces[i]] = false;
+      for (uint32_t v : mesh.faces[faces[i]]) first_face[v] = faces[i];
+    }
+  }
+  const NearestFace faces(mesh, first_face, is_left, near);
   for (const Part& part : attached) {
     double least = std::numeric_limits<double>::infinity();
     uint32_t nearest = bodies.bodies[0].faces[0];
@@ -396,7 +400,11 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
-  for (Part& part : scenery) parts.push_back(std::move(part));
+  const size_t count = parts.size();
+  for (Part& part : scenery) {
+    part.share = kSceneryShare * parts[0].share;
+    parts.push_back(std::move(part));
+  }
   Note(parts, attached, distance, mesh.report);
 
   if (parts.size() == 1 && attached.empty() && parts[0].components == 1) {
@@ -408,7 +416,7 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
       result.bodies.push_back(std::move(body));
     }
     MARROW_RETURN_IF_ERROR(
-        Attach(mesh.mesh, attached, distance, cancel, result));
+        Attach(mesh.mesh, attached, count, distance, cancel, result));
   }
   mesh.report.bridges = mesh.report.body_vertices = 0;
   double sum = 0;

@@ -21,7 +21,8 @@
 //     a body that is too small for rule 3, has at every level the label of the
 //     face nearest to it by points (surface_points.h). It enters no operator,
 //     so a mesh with specks is segmented exactly as without.
-//  5. Scenery is a body each, that counts for kSceneryShare of the others.
+//  5. Scenery is a body each, that counts for kSceneryShare of the largest.
+//     Nothing is attached to it.
 //  6. A body of more than kLargeBody vertices is computed on a coarse mesh of
 //     about kCoarseVertices (core/mesh/coarse_mesh.h): its parts are far larger
 //     than what that leaves out. Not where half of the vertices cannot go.
@@ -60,7 +61,8 @@ struct Body {
   // Vertices of the whole mesh that are one of this: the one that `vertices`
   // has, and another; ascending.
   std::vector<Bridge> seams;
-  double share = 1;  // of the area of all bodies
+  // Of the area of all bodies, scenery counting as rule 5 says.
+  double share = 1;
 
   // What is computed on.
   const CanonicalMesh& Computed() const {

@@ -130,7 +130,9 @@ std::vector<Bridge> SpanningBridges(const TriangleMesh& mesh, double longest,
   if (components == 1) return {};
   const UnitPoints box = ToUnitBox(mesh);
   longest /= box.unit;
-  Shells shells(mesh, box.points, UnitBridgingDistance(mesh, box.points),
+  // Points no farther apart than what they are to bridge.
+  Shells shells(mesh, box.points,
+                std::min(UnitBridgingDistance(mesh, box.points), longest),
                 cancel);
   return Span(shells, sets, n, components, longest * longest, cancel);
 }

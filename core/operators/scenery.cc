@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/mesh/unit_box.h"
+
 namespace marrow {
 namespace {
 
@@ -67,8 +69,7 @@ class SceneryFinder {
                 const std::vector<std::vector<uint32_t>>& components)
       : mesh_(mesh),
         components_(components),
-        // Squares of coordinates must neither overflow nor vanish.
-        unit_(mesh.positions / mesh.positions.cwiseAbs().maxCoeff()),
+        unit_(ToUnitBox(mesh).points),
         taken_(mesh.NumVertices(), 0),
         is_scenery_(components.size(), false) {}
 
@@ -106,18 +107,22 @@ class SceneryFinder {
   }
 
   bool IsScenery(uint32_t c) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < components_.size(); ++i)
+      if (i != c && !is_scenery_[i]) count += components_[i].size();
+    const double faces = static_cast<double>(components_[c].size());
+    if (faces > kFlatShare * count) return false;
     std::vector<uint32_t> others;
+    others.reserve(count);
     for (uint32_t i = 0; i < components_.size(); ++i)
       if (i != c && !is_scenery_[i])
         others.insert(others.end(), components_[i].begin(),
                       components_[i].end());
-    const double faces = static_cast<double>(components_[c].size());
-    if (faces > kFlatShare * others.size()) return false;
     const Extent own = ExtentOf(components_[c]), rest = ExtentOf(others);
     if (own.radius() < kScenerySize * rest.radius()) return false;
-    return (faces <= kPlainFaces && faces <= kPlainShare * others.size()) ||
+    return (faces <= kPlainFaces && faces <= kPlainShare * count) ||
            own.IsFlat() ||
-           (faces <= kEnclosingShare * others.size() && own.IsAround(rest));
+           (faces <= kEnclosingShare * count && own.IsAround(rest));
   }
 
   const TriangleMesh& mesh_;

@@ -10,13 +10,14 @@
 
 namespace marrow {
 
-// Which of the components, sets of faces, are scenery: those that reach at
-// least kScenerySize times as far from their middle as all the others together
-// do from theirs, and
-//  - have no more than kPlainFaces faces, and the others a hundred times as
+// Which of the components, sets of faces, are scenery. Those that reach
+// farthest from their middle are looked at first, eight at most, until one is
+// none: scenery reaches at least kScenerySize times as far as all others that
+// are none together do from theirs, and
+//  - has no more than kPlainFaces faces, and the others a hundred times as
 //    many, or
-//  - are flat, and have no more than kFlatShare times their faces, or
-//  - lie all around the others, and have no more than kEnclosingShare times
+//  - is flat, and has no more than kFlatShare times their faces, or
+//  - lies all around the others, and has no more than kEnclosingShare times
 //    their faces.
 // A limb, a garment or a body under its hair is none of these. There is always
 // a component that is not scenery. Distances are from the mean of the vertices,

@@ -73,7 +73,7 @@ struct SplitContext {
   const std::vector<double>& face_areas;  // in units of the mesh's whole area
   // Where the fronts step from shell to shell, as the operator does.
   FaceLinks links = {};
-  double share = 1;  // the area of the mesh by that of the largest body
+  double share = 1;  // Body::share by that of the largest body
 };
 
 struct Piece {

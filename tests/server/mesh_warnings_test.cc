@@ -78,8 +78,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Flaw{"COMPONENTS_ATTACHED", "1 component is too small",
                            [](MeshReport& r) { r.attached_components = 1; }},
                       Flaw{"SEVERAL_BODIES",
-                           "the mesh is 3 bodies far from each other; each is "
-                           "segmented on its own",
+                           "the mesh is 3 bodies, apart from each other or one "
+                           "the surroundings of others; each is segmented on "
+                           "its own",
                            [](MeshReport& r) { r.bodies = 3; }},
                       Flaw{"DEGENERATE_FACES", "3 faces have two corners",
                            [](MeshReport& r) { r.degenerate_faces = 3; }},

@@ -24,6 +24,7 @@ inline double SlowestStop(
     double step, double most,
     const std::function<absl::Status(const CancelToken&)>& work) {
   double slowest = 0;
+  int stops = 0;
   for (double delay = step; delay < most; delay += step) {
     CancelToken cancel;
     std::atomic<bool> done{false};
@@ -41,8 +42,10 @@ inline double SlowestStop(
     canceller.join();
     if (status.ok()) break;
     EXPECT_EQ(status.code(), absl::StatusCode::kCancelled) << status;
+    ++stops;
     slowest = std::max(slowest, stopped_at - cancelled_at);
   }
+  EXPECT_GT(stops, 0) << "done before it could be cancelled";
   return slowest;
 }
 

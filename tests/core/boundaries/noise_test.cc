@@ -68,8 +68,7 @@ TEST(BumpAgreementTest, NeitherScaleNorTurnMatters) {
               1e-9);
 }
 
-// Files have faces in either direction, and the kept one of two faces back to
-// back is that which sorts first.
+// Shells that were sewn may look opposite ways.
 TEST(BumpAgreementTest, TurnedFacesDoNotMatter) {
   for (const TriangleMesh& mesh :
        {Icosphere(3), RoughBall(0.5), Apart(LimbCross(3), Disk(6))}) {

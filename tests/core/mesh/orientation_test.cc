@@ -82,6 +82,16 @@ TEST(FacesInwardTest, TurnsEveryPartOutwards) {
   }
 }
 
+TEST(FacesInwardTest, NeitherOverflowsNorVanishes) {
+  TriangleMesh mesh = Icosphere(1);
+  for (Triangle& face : mesh.faces) Flip(face);
+  for (double factor : {0x1p-400, 0x1p400}) {
+    const TriangleMesh scaled = Scaled(mesh, factor);
+    EXPECT_EQ(FacesInward(scaled, FindSides(scaled, Adjacency(scaled))),
+              std::vector<bool>(80, true));
+  }
+}
+
 // Nothing is asked of an edge where three faces meet.
 TEST(OrientationTest, NonManifoldEdgesPart) {
   TriangleMesh mesh = Book(3, 1);

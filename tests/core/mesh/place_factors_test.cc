@@ -32,6 +32,13 @@ TEST(PlaceFactorsTest, AreThoseOfTheMeshMovedTurnedMirroredAndScaled) {
     EXPECT_NEAR(found[v], factors[renumbered.old_vertex[v]], 1e-9);
 }
 
+TEST(PlaceFactorsTest, NeitherOverflowNorVanish) {
+  const TriangleMesh mesh = Hook();
+  const std::vector<double> factors = PlaceFactors(mesh, kSpread);
+  for (double scale : {0x1p-400, 0x1p400})
+    EXPECT_EQ(PlaceFactors(Scaled(mesh, scale), kSpread), factors);
+}
+
 TEST(PlaceFactorsTest, TellNeighboursApart) {
   const TriangleMesh mesh = Hook();
   const std::vector<double> factors = PlaceFactors(mesh, kSpread);

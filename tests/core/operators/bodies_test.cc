@@ -154,6 +154,18 @@ TEST(BodiesTest, ACrowdOfEqualsHasNoOneLeftOut) {
   EXPECT_EQ(FindBodies(mesh).bodies.size(), 100u);
 }
 
+// Where they touch, neither has a vertex.
+TEST(BodiesTest, LegsOfACrowdAreBridgedAsOfOne) {
+  TriangleMesh leg = CubesSurface({{0, 0, 0}}, 1);
+  leg.positions *= Eigen::Vector3d(0.2, 0.2, 1).asDiagonal();
+  leg.positions.rowwise() += Eigen::RowVector3d(0.4, 0.4, -1);
+  const TriangleMesh creature = Together({CubesSurface({{0, 0, 0}}, 1), leg});
+  std::vector<TriangleMesh> crowd;
+  for (int i = 0; i < 40; ++i) crowd.push_back(MovedTo(creature, 10 * i));
+  CanonicalMesh mesh = CanonicalOf(Together(crowd));
+  EXPECT_EQ(FindBodies(mesh).bodies.size(), 40u);
+}
+
 TEST(BodiesTest, AnyScaleGivesTheSame) {
   const TriangleMesh mesh = Together({Icosphere(3), MovedTo(Icosphere(3), 2.01),
                                       MovedTo(Scaled(Icosphere(0), 0.01), 4)});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "core/operators/bodies.h"
@@ -70,6 +71,57 @@ TEST(SceneryTest, WhatIsPartOfACreatureIsNone) {
   TriangleMesh giant = Scaled(Icosphere(2), 4);
   giant.positions.col(0).array() += 8;
   EXPECT_EQ(CountScenery(giant, Icosphere(4)), 0u);
+}
+
+TEST(SceneryTest, MayBeSeveral) {
+  CanonicalMesh mesh = CanonicalOf(
+      Together({Icosphere(4), Ground(1, 5, 1.001), Scaled(Icosphere(3), 8)}));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 3u);
+  EXPECT_EQ(bodies.bodies[0].faces.size(), Icosphere(4).NumFaces());
+  EXPECT_NEAR(bodies.bodies[0].share, 1 / (1 + 2 * kSceneryShare), 1e-12);
+}
+
+TEST(SceneryTest, OfACrowdCountsAsOfOne) {
+  const TriangleMesh creature = Icosphere(2);
+  std::vector<TriangleMesh> crowd = {Ground(1, 1000, 1.001)};
+  for (int i = 0; i < 20; ++i) {
+    crowd.push_back(creature);
+    crowd.back().positions.col(0).array() += 10 * i;
+  }
+  CanonicalMesh mesh = CanonicalOf(Together(crowd));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 21u);
+  EXPECT_NEAR(bodies.bodies[20].share, kSceneryShare * bodies.bodies[0].share,
+              1e-12);
+}
+
+TEST(SceneryTest, NothingIsAttachedToIt) {
+  TriangleMesh nail = Scaled(Icosphere(0), 0.01);
+  nail.positions.col(2).array() -= 0.999;
+  nail.positions.col(0).array() += 0.3;
+  const TriangleMesh creature = Icosphere(4);
+  CanonicalMesh mesh =
+      CanonicalOf(Together({creature, Ground(1, 5, 1.001), nail}));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 2u);
+  EXPECT_EQ(mesh.report.attached_components, 1u);
+  const std::vector<uint32_t>& own = bodies.bodies[0].faces;
+  for (uint32_t f = 0; f < bodies.anchors.size(); ++f)
+    if (bodies.anchors[f] != f)
+      EXPECT_TRUE(
+          std::binary_search(own.begin(), own.end(), bodies.anchors[f]));
+}
+
+TEST(SceneryTest, OfWhatHasNoAreaThereIsNone) {
+  TriangleMesh line = SingleTriangle();
+  line.positions << 0, 0, 1, 0.1, 0, 1, 0.2, 0, 1;
+  CanonicalMesh mesh = CanonicalOf(Together({Ground(1, 5, 0), line}));
+  const Bodies bodies = FindBodies(mesh);
+  ASSERT_EQ(bodies.bodies.size(), 1u);
+  EXPECT_EQ(bodies.bodies[0].faces.size(), 2u);
+  EXPECT_EQ(bodies.bodies[0].share, 1);
+  EXPECT_EQ(mesh.report.attached_components, 1u);
 }
 
 TEST(SceneryTest, OfOneComponentThereIsNone) {
