@@ -110,18 +110,19 @@ Triangle OnSpots(const Triangle& face, const Spots& spots) {
           spots.of_point[face[2]]};
 }
 
-std::vector<FaceRecord> FacesOnSpots(const DecodedMesh& decoded,
-                                     const Spots& spots) {
+absl::StatusOr<std::vector<FaceRecord>> FacesOnSpots(
+    const DecodedMesh& decoded, const Spots& spots, const CancelToken& cancel) {
   std::vector<FaceRecord> records;
   records.reserve(decoded.faces.size());
-  for (uint32_t f = 0; f < decoded.faces.size(); ++f) {
+  const auto record = [&](uint32_t f) {
     Triangle t = OnSpots(decoded.faces[f], spots);
-    if (IsDegenerate(t)) continue;
+    if (IsDegenerate(t)) return;
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     const bool descends = t[2] < t[1];
     if (descends) std::swap(t[1], t[2]);
     records.push_back({t, descends, f});
-  }
+  };
+  MARROW_RETURN_IF_ERROR(ForEachIndex(decoded.faces.size(), cancel, record));
   return records;
 }
 
@@ -186,14 +187,15 @@ uint64_t CountFlipped(const std::vector<Directions>& directions,
 }
 
 // Turns faces over, and sorts them anew.
-void TurnOver(const std::vector<bool>& turned, CanonicalMesh& result) {
+absl::Status TurnOver(const std::vector<bool>& turned,
+                      const CancelToken& cancel, CanonicalMesh& result) {
   std::vector<Triangle>& faces = result.mesh.faces;
   std::vector<std::pair<Triangle, uint32_t>> sorted;
   sorted.reserve(faces.size());
-  for (uint32_t f = 0; f < faces.size(); ++f) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(faces.size(), cancel, [&](uint32_t f) {
     if (turned[f]) std::swap(faces[f][1], faces[f][2]);
     sorted.push_back({faces[f], f});
-  }
+  }));
   // The first corner is still the least: faces with the same stay together.
   for (auto run = sorted.begin(); run != sorted.end();) {
     const auto end = std::find_if(run, sorted.end(), [&](const auto& face) {
@@ -203,12 +205,13 @@ void TurnOver(const std::vector<bool>& turned, CanonicalMesh& result) {
     run = end;
   }
   std::vector<uint32_t> now(faces.size());
-  for (uint32_t f = 0; f < sorted.size(); ++f) {
+  MARROW_RETURN_IF_ERROR(ForEachIndex(sorted.size(), cancel, [&](uint32_t f) {
     faces[f] = sorted[f].first;
     now[sorted[f].second] = f;
-  }
+  }));
   for (uint32_t& f : result.face_map)
     if (f != kNoIndex) f = now[f];
+  return absl::OkStatus();
 }
 
 // Finds the kept face whose labels a dropped degenerate face shall have.
@@ -333,7 +336,8 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
                                        const Spots& spots,
                                        const CancelToken& cancel,
                                        std::vector<uint32_t>& vertex_of_spot) {
-  std::vector<FaceRecord> records = FacesOnSpots(decoded, spots);
+  MARROW_ASSIGN_OR_RETURN(std::vector<FaceRecord> records,
+                          FacesOnSpots(decoded, spots, cancel));
   if (records.empty()) {
     return Rejected(absl::StrCat(
         "all ", decoded.faces.size(),
@@ -349,10 +353,8 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
   const Sides sides =
       FindSides(result.mesh, Adjacency(result.mesh, cancel), cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  const std::vector<bool> turned = FacesInward(result.mesh, sides);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  TurnOver(turned, result);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const std::vector<bool> turned = FacesInward(result.mesh, sides, cancel);
+  MARROW_RETURN_IF_ERROR(TurnOver(turned, cancel, result));
   result.report = ReportOn(result.mesh, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   result.report.decoded_points = decoded.positions.rows();

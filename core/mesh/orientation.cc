@@ -91,16 +91,16 @@ void TurnTheFewer(Sides& sides) {
 
 // The mean corner of each part.
 std::vector<Eigen::Vector3d> Centers(const TriangleMesh& mesh,
-                                     const Positions& unit,
-                                     const Sides& sides) {
+                                     const Positions& unit, const Sides& sides,
+                                     const CancelToken& cancel) {
   std::vector<Eigen::Vector3d> centers(sides.NumParts(),
                                        Eigen::Vector3d::Zero());
   std::vector<double> corners(sides.NumParts(), 0);
-  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+  (void)ForEachIndex(mesh.faces.size(), cancel, [&](size_t f) {
     for (uint32_t v : mesh.faces[f])
       centers[sides.part[f]] += unit.row(v).transpose();
     corners[sides.part[f]] += 3;
-  }
+  });
   for (uint32_t i = 0; i < sides.NumParts(); ++i) centers[i] /= corners[i];
   return centers;
 }
@@ -115,7 +115,7 @@ Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
   Sides sides{std::vector<uint32_t>(n), std::vector<bool>(n), {}};
   std::vector<uint32_t> part(n, kNoIndex);  // by representative, as the next
   std::vector<bool> least_is_turned(n);
-  for (uint32_t f = 0; f < n; ++f) {
+  const auto number = [&](uint32_t f) {
     const auto [set, is_turned] = sets.Find(f);
     if (part[set] == kNoIndex) {
       part[set] = sides.NumParts();
@@ -124,7 +124,8 @@ Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
     }
     sides.part[f] = part[set];
     sides.is_turned[f] = is_turned != least_is_turned[set];
-  }
+  };
+  (void)ForEachIndex(n, cancel, number);
   if (!cancel.IsCancelled()) TurnTheFewer(sides);
   return sides;
 }
@@ -145,12 +146,14 @@ Orientation CheckOrientation(const TriangleMesh& mesh,
   return result;
 }
 
-std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides) {
+std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides,
+                              const CancelToken& cancel) {
   const Positions unit = mesh.positions * UnitScale(mesh);
-  const std::vector<Eigen::Vector3d> centers = Centers(mesh, unit, sides);
+  const std::vector<Eigen::Vector3d> centers =
+      Centers(mesh, unit, sides, cancel);
   // By part, once those that are turned are turned over.
   std::vector<double> volumes(sides.NumParts(), 0);
-  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+  const auto add_volume = [&](size_t f) {
     const Eigen::Vector3d& center = centers[sides.part[f]];
     const auto from_center = [&](int corner) -> Eigen::Vector3d {
       return unit.row(mesh.faces[f][corner]).transpose() - center;
@@ -158,7 +161,8 @@ std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides) {
     const double volume =
         from_center(0).dot(from_center(1).cross(from_center(2)));
     volumes[sides.part[f]] += sides.is_turned[f] ? -volume : volume;
-  }
+  };
+  (void)ForEachIndex(mesh.faces.size(), cancel, add_volume);
   std::vector<bool> inward(mesh.NumFaces());
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
     inward[f] = sides.is_turned[f] != (volumes[sides.part[f]] < 0);

@@ -43,8 +43,10 @@ Orientation CheckOrientation(const TriangleMesh& mesh,
 // The faces to turn over so that those of a part agree and face outwards: the
 // volume under them, seen from the mean of their corners, is not negative.
 // Where it is zero, those that are turned in `sides`. A part by itself, or
-// scaled by a power of two, has the same. Linear, thread safe.
-std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides);
+// scaled by a power of two, has the same. Linear, thread safe. Of no use once
+// cancelled.
+std::vector<bool> FacesInward(const TriangleMesh& mesh, const Sides& sides,
+                              const CancelToken& cancel = CancelToken());
 
 }  // namespace marrow
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "absl/memory/memory.h"
 #include "core/base/status_macros.h"
 #include "core/diffusion/diffusion_map.h"
 #include "core/operators/laplacian.h"
@@ -38,32 +39,44 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies,
 }
 
 struct PreparedBody::Own {
-  explicit Own(const TriangleMesh& mesh)
-      : adjacency(mesh), areas(FaceAreaShares(mesh)) {}
+  Own(const TriangleMesh& mesh, const CancelToken& cancel)
+      : adjacency(mesh, cancel), areas(FaceAreaShares(mesh)) {}
   const Adjacency adjacency;
   const std::vector<double> areas;
 };
 
+absl::StatusOr<std::unique_ptr<PreparedBody>> PreparedBody::Make(
+    const Prepared& prepared, const Body& body, uint32_t most_pairs,
+    std::unique_ptr<EigenPairStream> stream, const CancelToken& cancel) {
+  const TriangleMesh& mesh = body.Computed().mesh;
+  std::shared_ptr<const Own> own;
+  if (!prepared.bodies.IsComputedWhole())
+    own = std::make_shared<const Own>(mesh, cancel);
+  const std::vector<Bridge> bridges =
+      body.coarse == nullptr ? body.bridges : FindBridges(mesh, cancel);
+  // Before anything walks what may be half built.
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  return absl::WrapUnique(new PreparedBody(
+      prepared, body, std::move(own), bridges, most_pairs, std::move(stream)));
+}
+
 PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
+                           std::shared_ptr<const Own> own,
+                           const std::vector<Bridge>& bridges,
                            uint32_t most_pairs,
                            std::unique_ptr<EigenPairStream> stream)
     : area_(body.Computed().report.area),
       share_(body.share),
       most_pairs_(std::min(most_pairs, body.Computed().mesh.NumVertices() - 1)),
-      own_(prepared.bodies.IsComputedWhole()
-               ? nullptr
-               : std::make_shared<const Own>(body.Computed().mesh)),
+      own_(std::move(own)),
       stream_(std::move(stream)),
       pulled_{std::make_shared<const EigenPairs>(), 0},
-      context_{
-          body.Computed().mesh,
-          own_ ? own_->adjacency : prepared.adjacency,
-          pulled_,
-          own_ ? own_->areas : prepared.areas,
-          FaceLinks(own_ ? own_->adjacency : prepared.adjacency,
-                    body.coarse == nullptr ? body.bridges
-                                           : FindBridges(body.Computed().mesh)),
-          body.share / prepared.bodies.bodies[0].share} {}
+      context_{body.Computed().mesh,
+               own_ ? own_->adjacency : prepared.adjacency,
+               pulled_,
+               own_ ? own_->areas : prepared.areas,
+               FaceLinks(own_ ? own_->adjacency : prepared.adjacency, bridges),
+               body.share / prepared.bodies.bodies[0].share} {}
 
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,

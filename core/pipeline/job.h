@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 #include "core/hierarchy/segment_tree.h"
 #include "core/mesh/adjacency.h"
@@ -61,8 +62,10 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies,
 class PreparedBody {
  public:
   // Of a stream of `most_pairs`. There are no pairs before the first Pull().
-  PreparedBody(const Prepared& prepared, const Body& body, uint32_t most_pairs,
-               std::unique_ptr<EigenPairStream> stream);
+  // Errors: CANCELLED.
+  static absl::StatusOr<std::unique_ptr<PreparedBody>> Make(
+      const Prepared& prepared, const Body& body, uint32_t most_pairs,
+      std::unique_ptr<EigenPairStream> stream, const CancelToken& cancel);
   PreparedBody(const PreparedBody&) = delete;
   PreparedBody& operator=(const PreparedBody&) = delete;
 
@@ -81,6 +84,10 @@ class PreparedBody {
  private:
   struct Own;
 
+  PreparedBody(const Prepared& prepared, const Body& body,
+               std::shared_ptr<const Own> own,
+               const std::vector<Bridge>& bridges, uint32_t most_pairs,
+               std::unique_ptr<EigenPairStream> stream);
   absl::Status PullUpTo(double bound, const CancelToken& cancel,
                         const ProgressCallback& progress);
 

@@ -43,13 +43,15 @@ absl::Status Run(std::string_view draco_bytes, const MeshLimits& limits,
   MARROW_RETURN_IF_ERROR(reporter.Progress(Stage::kSpectrum, kMeshDone));
   const Prepared& prepared =
       workspace->prepared.emplace(Prepare(canonical, bodies, cancel));
-  for (const Body& body : bodies.bodies) {
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-    const uint32_t most = PairsOfBody(body, options.eigen_pairs);
-    workspace->prepared_bodies.push_back(std::make_unique<PreparedBody>(
-        prepared, body, most, pairs.Open(body.Computed(), most)));
-  }
   MARROW_RETURN_IF_ERROR(cancel.Check());
+  for (const Body& body : bodies.bodies) {
+    const uint32_t most = PairsOfBody(body, options.eigen_pairs);
+    MARROW_ASSIGN_OR_RETURN(
+        std::unique_ptr<PreparedBody> ready,
+        PreparedBody::Make(prepared, body, most,
+                           pairs.Open(body.Computed(), most), cancel));
+    workspace->prepared_bodies.push_back(std::move(ready));
+  }
   const Job job{workspace, prepared, workspace->prepared_bodies,
                 options,   cancel,   reporter,
                 sink};
