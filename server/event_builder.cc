@@ -168,6 +168,7 @@ void SetMeshReport(const MeshReport& report, v1::MeshReport* message) {
   message->set_faces(report.faces);
   message->set_welded_points(report.welded_points);
   message->set_crack_points(report.crack_points);
+  message->set_t_junctions(report.t_junctions);
   message->set_unused_points(report.unused_points);
   message->set_degenerate_faces(report.degenerate_faces);
   message->set_duplicate_faces(report.duplicate_faces);

@@ -39,6 +39,9 @@ constexpr Kind kKinds[] = {
      "vertex lies beside another with a crack between them; they are made one",
      "vertices lie beside others with cracks between them; they are made one "
      "with those"},
+    {"T_JUNCTIONS", true, &MeshReport::t_junctions,
+     "vertex lies inside an open edge; the face there is split at it",
+     "vertices lie inside open edges; the faces there are split at them"},
     {"DEGENERATE_FACES", true, &MeshReport::degenerate_faces,
      "face has two corners at one position; it has a neighbour's label",
      "faces have two corners at one position; each has a neighbour's label"},

@@ -17,8 +17,8 @@ bool SameCluster(double lower, double upper) {
 
 }  // namespace
 
-double TimeScale(const EigenPairs& pairs, double area_share) {
-  return area_share / (2 * pairs.eigenvalues[1]);
+double TimeScale(double slowest, double area_share) {
+  return area_share / (2 * slowest);
 }
 
 std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
@@ -36,10 +36,15 @@ std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
   return dimension;
 }
 
-uint32_t NumPairsOfWholeClusters(const EigenPairs& pairs) {
-  const uint32_t all = std::max(pairs.NumPairs(), 1u) - 1;
+uint32_t NumPairsOfWholeClusters(const EigenPairs& pairs, uint32_t most) {
+  const uint32_t available = std::max(pairs.NumPairs(), 1u) - 1;
+  const uint32_t all = std::min(available, most);
   const auto& lambda = pairs.eigenvalues;
   uint32_t whole = all;
+  if (all < available) {
+    while (whole > 0 && SameCluster(lambda[whole], lambda[whole + 1])) --whole;
+    return whole;
+  }
   while (whole > 1 && SameCluster(lambda[whole - 1], lambda[whole])) --whole;
   return whole == all || pairs.complete ? all : whole - 1;
 }

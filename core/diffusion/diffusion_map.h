@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,9 +20,10 @@ namespace marrow {
 using DiffusionMap =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Eq. 10: t of a region that has `area_share` of the mesh's area.
-// REQUIRES: pairs has a pair besides the constant one.
-double TimeScale(const EigenPairs& pairs, double area_share);
+// Eq. 10: t of a region that has `area_share` of the mesh's area. `slowest` is
+// the first eigenvalue besides that of the constant pair, or what
+// core/diffusion/shell_scale.h says.
+double TimeScale(double slowest, double area_share);
 
 // The number of pairs besides the constant one with e^(-lambda t) > delta, at
 // least 1; a cluster of equal eigenvalues is taken whole. No value where the
@@ -29,9 +31,11 @@ double TimeScale(const EigenPairs& pairs, double area_share);
 std::optional<uint32_t> MapDimension(const EigenPairs& pairs, double t,
                                      double delta);
 
-// The pairs besides the constant one, but for the last where they are equal and
-// more may follow that are.
-uint32_t NumPairsOfWholeClusters(const EigenPairs& pairs);
+// The pairs besides the constant one, `most` of them, but for the last where
+// they are equal and more follow that are, or may.
+uint32_t NumPairsOfWholeClusters(
+    const EigenPairs& pairs,
+    uint32_t most = std::numeric_limits<uint32_t>::max());
 
 // The maps of the given vertices of the mesh, in their order.
 DiffusionMap BuildDiffusionMap(const EigenPairs& pairs,

@@ -1,11 +1,11 @@
 #include "core/mesh/canonical_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,6 +16,8 @@
 #include "core/mesh/adjacency.h"
 #include "core/mesh/cracks.h"
 #include "core/mesh/orientation.h"
+#include "core/mesh/spots.h"
+#include "core/mesh/t_junctions.h"
 
 namespace marrow {
 namespace {
@@ -27,71 +29,11 @@ absl::Status Rejected(const std::string& what) {
   return WithReason(absl::InvalidArgumentError(what), kReasonMeshRejected);
 }
 
-// The highest bit in which two finite numbers differ, written in binary: the
-// power of two, but for a constant. The sign is above all bits.
-int HighestDifference(double a, double b) {
-  constexpr int kMantissa = 52;
-  if (a == b) return std::numeric_limits<int>::min();
-  if ((a < 0) != (b < 0)) return std::numeric_limits<int>::max();
-  const auto x = std::bit_cast<uint64_t>(std::abs(a));
-  const auto y = std::bit_cast<uint64_t>(std::abs(b));
-  const auto exponent = static_cast<int>(std::max(x, y) >> kMantissa);
-  if (x >> kMantissa != y >> kMantissa) return exponent;
-  return std::max(exponent, 1) - kMantissa + std::bit_width(x ^ y) - 1;
-}
-
-// The Z-order of Morton: by the coordinate that differs in the highest bit, x
-// before y before z.
-bool IsBeforeOnCurve(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  int by = 0, highest = HighestDifference(a[0], b[0]);
-  for (int i = 1; i < 3; ++i)
-    if (const int bit = HighestDifference(a[i], b[i]); bit > highest) {
-      by = i;
-      highest = bit;
-    }
-  return a[by] < b[by];
-}
-
-// The different positions of the payload in canonical order, called spots
-// until it is known which of them are vertices.
-struct Spots {
-  Positions positions;
-  std::vector<uint32_t> of_point;
-};
-
-absl::StatusOr<Spots> Weld(const Positions& points, const CancelToken& cancel) {
-  struct Record {
-    Eigen::Vector3d place;
-    uint32_t point;
-  };
-  std::vector<Record> records(points.rows());
-  for (uint32_t p = 0; p < records.size(); ++p)
-    // Adding 0 makes -0 into 0 and leaves everything else.
-    records[p] = {points.row(p).transpose().array() + 0.0, p};
-  const auto before = [](const Record& a, const Record& b) {
-    return IsBeforeOnCurve(a.place, b.place);
-  };
-  MARROW_RETURN_IF_ERROR(
-      SortUnlessCancelled(records.begin(), records.end(), before, cancel));
-  Spots spots;
-  spots.of_point.resize(records.size());
-  spots.positions.resize(points.rows(), 3);
-  uint32_t count = 0;
-  MARROW_RETURN_IF_ERROR(ForEachIndex(records.size(), cancel, [&](size_t i) {
-    const auto& [place, point] = records[i];
-    if (i == 0 || place != records[i - 1].place)
-      spots.positions.row(count++) = place.transpose();
-    spots.of_point[point] = count - 1;
-  }));
-  spots.positions.conservativeResize(count, 3);
-  return spots;
-}
-
 // A face between spots, ascending.
 struct FaceRecord {
   Triangle spots;
-  bool descends;  // the payload has it the other way round
-  uint32_t decoded_face;
+  bool descends;          // the payload has it the other way round
+  uint32_t decoded_face;  // none for all but the largest part of one
 };
 
 // In which directions the payload has a kept face: of both for twins that lie
@@ -110,6 +52,37 @@ Triangle OnSpots(const Triangle& face, const Spots& spots) {
           spots.of_point[face[2]]};
 }
 
+double TwiceArea(const Triangle& t, const Positions& positions) {
+  const Eigen::Vector3d a = positions.row(t[0]).transpose();
+  const Eigen::Vector3d b = positions.row(t[1]).transpose();
+  const Eigen::Vector3d c = positions.row(t[2]).transpose();
+  return (b - a).cross(c - a).stableNorm();
+}
+
+// Begins with the least corner; whether the other two then descend. They do not
+// any more.
+bool MakeAscending(Triangle& t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  if (t[1] < t[2]) return false;
+  std::swap(t[1], t[2]);
+  return true;
+}
+
+void AddFace(const Spots& spots, const FaceRecord& face,
+             std::vector<FaceRecord>& records) {
+  if (spots.junctions.empty()) return records.push_back(face);
+  std::vector<Triangle> parts = SplitAt(spots.junctions, face.spots);
+  const auto largest = std::max_element(
+      parts.begin(), parts.end(), [&](const Triangle& a, const Triangle& b) {
+        return TwiceArea(a, spots.positions) < TwiceArea(b, spots.positions);
+      });
+  for (auto part = parts.begin(); part != parts.end(); ++part) {
+    const bool descends = MakeAscending(*part);
+    records.push_back({*part, descends != face.descends,
+                       part == largest ? face.decoded_face : kNoIndex});
+  }
+}
+
 absl::StatusOr<std::vector<FaceRecord>> FacesOnSpots(
     const DecodedMesh& decoded, const Spots& spots, const CancelToken& cancel) {
   std::vector<FaceRecord> records;
@@ -117,10 +90,8 @@ absl::StatusOr<std::vector<FaceRecord>> FacesOnSpots(
   const auto record = [&](uint32_t f) {
     Triangle t = OnSpots(decoded.faces[f], spots);
     if (IsDegenerate(t)) return;
-    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    const bool descends = t[2] < t[1];
-    if (descends) std::swap(t[1], t[2]);
-    records.push_back({t, descends, f});
+    const bool descends = MakeAscending(t);
+    AddFace(spots, {t, descends, f}, records);
   };
   MARROW_RETURN_IF_ERROR(ForEachIndex(decoded.faces.size(), cancel, record));
   return records;
@@ -144,7 +115,8 @@ absl::Status KeepFaces(std::vector<FaceRecord>& records,
     }
     (descends ? directions.back().descending : directions.back().ascending) =
         true;
-    result.face_map[decoded_face] = static_cast<uint32_t>(faces.size() - 1);
+    if (decoded_face != kNoIndex)
+      result.face_map[decoded_face] = static_cast<uint32_t>(faces.size() - 1);
   }
   return cancel.Check();
 }
@@ -369,6 +341,15 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
   return result;
 }
 
+// By vertex.
+std::vector<uint32_t> SpotsOfVertices(
+    const CanonicalMesh& mesh, const std::vector<uint32_t>& vertex_of_spot) {
+  std::vector<uint32_t> spots(mesh.mesh.NumVertices());
+  for (uint32_t s = 0; s < vertex_of_spot.size(); ++s)
+    if (vertex_of_spot[s] != kNoIndex) spots[vertex_of_spot[s]] = s;
+  return spots;
+}
+
 // How many vertices became one with another.
 absl::StatusOr<uint64_t> CloseCracks(
     const CanonicalMesh& mesh, const std::vector<uint32_t>& vertex_of_spot,
@@ -376,16 +357,51 @@ absl::StatusOr<uint64_t> CloseCracks(
   if (mesh.report.boundary_edges == 0) return 0;
   MARROW_ASSIGN_OR_RETURN(const std::vector<uint32_t> closed,
                           FindCracks(mesh.mesh, cancel));
-  std::vector<uint32_t> spot_of_vertex(closed.size());
-  for (uint32_t s = 0; s < vertex_of_spot.size(); ++s)
-    if (vertex_of_spot[s] != kNoIndex) spot_of_vertex[vertex_of_spot[s]] = s;
   uint64_t count = 0;
   for (uint32_t v = 0; v < closed.size(); ++v) count += closed[v] != v;
   if (count == 0) return 0;
+  const std::vector<uint32_t> spot_of_vertex =
+      SpotsOfVertices(mesh, vertex_of_spot);
   for (uint32_t& spot : spots.of_point)
     if (const uint32_t v = vertex_of_spot[spot]; v != kNoIndex)
       spot = spot_of_vertex[closed[v]];
   return count;
+}
+
+// How many vertices lie inside edges, at which those are split from now on.
+absl::StatusOr<uint64_t> SplitEdges(const CanonicalMesh& mesh,
+                                    const std::vector<uint32_t>& vertex_of_spot,
+                                    const CancelToken& cancel, Spots& spots) {
+  if (mesh.report.boundary_edges == 0) return 0;
+  MARROW_ASSIGN_OR_RETURN(const TJunctions junctions,
+                          FindTJunctions(mesh.mesh, cancel));
+  const std::vector<uint32_t> spot_of_vertex =
+      SpotsOfVertices(mesh, vertex_of_spot);
+  uint64_t count = 0;
+  // Vertices are in the order of their spots.
+  for (const auto& [edge, inside] : junctions) {
+    auto& on_spots =
+        spots.junctions[{spot_of_vertex[edge[0]], spot_of_vertex[edge[1]]}];
+    for (uint32_t v : inside) on_spots.push_back(spot_of_vertex[v]);
+    count += inside.size();
+  }
+  return count;
+}
+
+// Assembles what has parts of faces. What is told of the payload's faces is
+// what was told before.
+absl::Status AssembleSplit(const DecodedMesh& decoded, const Spots& spots,
+                           const CancelToken& cancel,
+                           std::vector<uint32_t>& vertex_of_spot,
+                           CanonicalMesh& result) {
+  const MeshReport before = result.report;
+  MARROW_ASSIGN_OR_RETURN(result,
+                          Assemble(decoded, spots, cancel, vertex_of_spot));
+  result.report.degenerate_faces = before.degenerate_faces;
+  result.report.duplicate_faces = before.duplicate_faces;
+  result.report.flipped_faces = before.flipped_faces;
+  result.report.crack_points = before.crack_points;
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -412,6 +428,13 @@ absl::StatusOr<CanonicalMesh> Canonicalize(const DecodedMesh& decoded,
     MARROW_ASSIGN_OR_RETURN(result,
                             Assemble(decoded, spots, cancel, vertex_of_spot));
     result.report.crack_points = cracked;
+  }
+  MARROW_ASSIGN_OR_RETURN(const uint64_t junctions,
+                          SplitEdges(result, vertex_of_spot, cancel, spots));
+  if (junctions > 0) {
+    MARROW_RETURN_IF_ERROR(
+        AssembleSplit(decoded, spots, cancel, vertex_of_spot, result));
+    result.report.t_junctions = junctions;
   }
   MARROW_RETURN_IF_ERROR(
       MapDegenerateFaces(decoded, spots, vertex_of_spot, cancel, result));

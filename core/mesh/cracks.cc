@@ -1,7 +1,6 @@
 #include "core/mesh/cracks.h"
 
 #include <algorithm>
-#include <nanoflann.hpp>
 #include <utility>
 
 #include "core/base/cancellable.h"
@@ -9,27 +8,13 @@
 #include "core/mesh/adjacency.h"
 #include "core/mesh/rims.h"
 #include "core/mesh/unit_box.h"
+#include "core/mesh/vertex_cloud.h"
 
 namespace marrow {
 namespace {
 
 constexpr double kMostBreadth = 1e-5;
 constexpr double kMostOfEdge = 0.1;
-
-// nanoflann's view of some vertices.
-struct Cloud {
-  const Positions& points;
-  const std::vector<uint32_t>& vertices;
-
-  size_t kdtree_get_point_count() const { return vertices.size(); }
-  double kdtree_get_pt(size_t i, size_t d) const {
-    return points(vertices[i], d);
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
 
 // How far from each vertex others are one with it, squared.
 std::vector<double> SquaredReach(const TriangleMesh& mesh,
@@ -58,10 +43,8 @@ absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
   const Positions points = ToUnitBox(mesh).points;
   const std::vector<double> reach = SquaredReach(mesh, points);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  const Cloud cloud{points, rim};
-  const nanoflann::KDTreeSingleIndexAdaptor<
-      nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
-      tree(3, cloud);
+  const VertexCloud cloud{points, rim};
+  const VertexTree tree(3, cloud);
   std::vector<std::pair<uint32_t, double>> near;
   MARROW_RETURN_IF_ERROR(ForEachIndex(rim.size(), cancel, [&](size_t k) {
     const uint32_t v = rim[k];

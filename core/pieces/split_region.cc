@@ -173,7 +173,7 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   if (faces.size() < kMinRegionFaces || region.area() <= 0)
     return Unsplit(StopReason::kTooSmall);
   if (pairs.NumPairs() < 2) return Unsplit(StopReason::kTooFewEigenPairs);
-  const double t = TimeScale(pairs, region.area());
+  const double t = TimeScale(context.pulled.Slowest(), region.area());
   const std::optional<uint32_t> dimension =
       MapDimension(pairs, t, options.delta);
   if (!dimension) return Unsplit(StopReason::kTooFewEigenPairs);
@@ -209,9 +209,10 @@ std::vector<uint32_t> MedialStructureOf(const SplitContext& context,
                                         const SplitOptions& options) {
   const Region region(context.mesh, context.adjacency, context.face_areas,
                       faces, context.links);
-  const auto& [pairs, usable] = context.pulled;
+  const auto& pairs = context.pulled.pairs;
+  const uint32_t usable = context.pulled.usable;
   if (usable == 0 || region.area() <= 0) return region.mesh_vertices();
-  const double t = TimeScale(*pairs, region.area());
+  const double t = TimeScale(context.pulled.Slowest(), region.area());
   const uint32_t wanted =
       MapDimension(*pairs, t, options.delta).value_or(usable);
   const DiffusionMap Phi = BuildDiffusionMap(*pairs, region.mesh_vertices(), t,

@@ -63,6 +63,14 @@ struct PulledPairs {
   // Those beyond are at hand only because others wanted them: where answers
   // depended on them, they would depend on the cache.
   uint32_t usable = 0;
+  // What the time scale goes by (core/diffusion/shell_scale.h); 0 where that is
+  // the first eigenvalue.
+  double slowest = 0;
+
+  // REQUIRES: a pair besides the constant one.
+  double Slowest() const {
+    return slowest > 0 ? slowest : pairs->eigenvalues[1];
+  }
 };
 
 // What all regions of one mesh share. The referents must outlive the use.

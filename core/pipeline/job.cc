@@ -69,6 +69,8 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
       share_(body.share),
       most_pairs_(std::min(most_pairs, body.Computed().mesh.NumVertices() - 1)),
       own_(std::move(own)),
+      scale_(body.Computed().mesh, own_ ? own_->areas : prepared.areas,
+             bridges),
       stream_(std::move(stream)),
       pulled_{std::make_shared<const EigenPairs>(), 0},
       context_{body.Computed().mesh,
@@ -81,12 +83,13 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,
                                 const ProgressCallback& progress) {
+  MARROW_RETURN_IF_ERROR(FindSlowest(cancel, progress));
   const auto& pairs = pulled_.pairs;
   std::optional<uint32_t> taken;
   for (double bound = 0;;) {
     if (pairs->NumPairs() > 1) {
       // A little less, for the sum of a region's areas may be rounded.
-      const double t = TimeScale(*pairs, (1 - 1e-9) * area_share);
+      const double t = TimeScale(pulled_.slowest, (1 - 1e-9) * area_share);
       taken = MapDimension(*pairs, t, delta);
       bound = std::max(-std::log(delta) / t,
                        pairs->eigenvalues[pairs->NumPairs() - 1]);
@@ -96,6 +99,21 @@ absl::Status PreparedBody::Pull(double area_share, double delta,
   }
   pulled_.usable = std::max(pulled_.usable,
                             taken ? *taken : NumPairsOfWholeClusters(*pairs));
+  return absl::OkStatus();
+}
+
+absl::Status PreparedBody::FindSlowest(const CancelToken& cancel,
+                                       const ProgressCallback& progress) {
+  if (pulled_.slowest > 0) return absl::OkStatus();
+  const auto& pairs = pulled_.pairs;
+  // One more tells whether the last is one of a cluster.
+  const uint32_t wanted = scale_.empty() ? 2 : ShellScale::kPairs + 2;
+  while (pairs->NumPairs() < wanted && stream_ != nullptr) {
+    const double bound =
+        pairs->NumPairs() > 1 ? pairs->eigenvalues[pairs->NumPairs() - 1] : 0;
+    MARROW_RETURN_IF_ERROR(PullUpTo(bound, cancel, progress));
+  }
+  if (pairs->NumPairs() > 1) pulled_.slowest = scale_.Slowest(*pairs);
   return absl::OkStatus();
 }
 

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
+#include "core/diffusion/shell_scale.h"
 #include "core/hierarchy/segment_tree.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/canonical_mesh.h"
@@ -88,6 +89,9 @@ class PreparedBody {
                std::shared_ptr<const Own> own,
                const std::vector<Bridge>& bridges, uint32_t most_pairs,
                std::unique_ptr<EigenPairStream> stream);
+  // Pulls what the time scale goes by, the first time.
+  absl::Status FindSlowest(const CancelToken& cancel,
+                           const ProgressCallback& progress);
   absl::Status PullUpTo(double bound, const CancelToken& cancel,
                         const ProgressCallback& progress);
 
@@ -95,6 +99,7 @@ class PreparedBody {
   const double share_;
   const uint32_t most_pairs_;
   const std::shared_ptr<const Own> own_;
+  const ShellScale scale_;
   std::unique_ptr<EigenPairStream> stream_;  // null once it has ended
   PulledPairs pulled_;
   const SplitContext context_;

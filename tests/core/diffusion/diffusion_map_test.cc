@@ -73,8 +73,8 @@ struct Scene {
 
 TEST(TimeScaleTest, IsEquationTen) {
   const EigenPairs pairs = PairsOf({0, 4, 9, 16}, true);
-  EXPECT_DOUBLE_EQ(TimeScale(pairs, 1), 1.0 / 8);
-  EXPECT_DOUBLE_EQ(TimeScale(pairs, 0.25), 1.0 / 32);
+  EXPECT_DOUBLE_EQ(TimeScale(pairs.eigenvalues[1], 1), 1.0 / 8);
+  EXPECT_DOUBLE_EQ(TimeScale(pairs.eigenvalues[1], 0.25), 1.0 / 32);
 }
 
 TEST(MapDimensionTest, CountsThePairsAboveDelta) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <initializer_list>
 #include <map>
 #include <random>
@@ -207,23 +208,11 @@ TriangleMesh Moved(TriangleMesh mesh, const Eigen::RowVector3d& by) {
   return mesh;
 }
 
-// In one file, where they are.
-TriangleMesh Together(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  const uint32_t n = a.NumVertices();
-  both.positions.resize(n + b.NumVertices(), 3);
-  both.positions << a.positions, b.positions;
-  both.faces = a.faces;
-  for (const Triangle& f : b.faces)
-    both.faces.push_back({n + f[0], n + f[1], n + f[2]});
-  return both;
-}
-
 TEST(BodiesTest, TwoCreaturesAreChildrenOfTheRoot) {
   const TriangleMesh octopus = MakeCreature("octopus").mesh;
   const TriangleMesh hand = Scaled(MakeCreature("hand").mesh, 0.7);
   const TriangleMesh mesh =
-      Together(octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
+      Together({octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0})});
   const RecordingSink run = RunOn(mesh, Levels(2));
   EXPECT_EQ(run.mesh.report.bodies, 2u);
   ASSERT_EQ(run.levels.size(), 2u);
@@ -248,7 +237,7 @@ TEST(BodiesTest, MergedCreaturesKeepTheirLevels) {
   const TriangleMesh octopus = MakeCreature("octopus").mesh;
   const TriangleMesh hand = Scaled(MakeCreature("hand").mesh, 0.7);
   const TriangleMesh mesh =
-      Together(octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0}));
+      Together({octopus, Moved(hand, {3 * Diagonal(octopus), 0, 0})});
   const RecordingSink run = RunOn(mesh, Levels(3, Method::kMerge));
   ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
                   run.mesh.report.area, true, true);
@@ -307,7 +296,7 @@ TEST(BodiesTest, LegsOfBoxesStandInTheirTrunk) {
   TriangleMesh dog = Box({0, 0, 0}, {10, 3, 3});
   for (double x : {1.0, 8.0})
     for (double z : {0.3, 1.9})
-      dog = Together(dog, Box({x, -4, z}, {x + 0.8, 0.5, z + 0.8}));
+      dog = Together({dog, Box({x, -4, z}, {x + 0.8, 0.5, z + 0.8})});
   const RecordingSink run = RunOn(dog, Levels(1, Method::kMerge));
   EXPECT_EQ(run.mesh.report.bodies, 1u);
   EXPECT_EQ(run.mesh.report.bridged_components, 5u);
@@ -325,7 +314,31 @@ TEST(BodiesTest, LegsOfBoxesStandInTheirTrunk) {
   EXPECT_EQ(beside[labels[0]].size(), 4u);
 }
 
-// More of the area than the body, and no more than its hair.
+// Longer than all of the body, and slower than any of its limbs.
+TEST(BodiesTest, AStaffInAHandChangesNoLimb) {
+  const TriangleMesh body = MakeCreature("humanoid").mesh;
+  const SegmentationOptions options = Levels(2, Method::kMerge);
+  const RecordingSink alone = RunOn(body, options);
+  Eigen::Index hand;
+  body.positions.col(0).maxCoeff(&hand);
+  const Eigen::Vector3d at = body.positions.row(hand);
+  for (double above : {1.5, 2.0}) {
+    const TriangleMesh staff = Box(at - Eigen::Vector3d(0.02, 0.3, 0.02),
+                                   at + Eigen::Vector3d(0.02, above, 0.02));
+    const RecordingSink run = RunOn(Together({body, staff}), options);
+    EXPECT_EQ(run.mesh.report.bodies, 1u);
+    for (const auto& [with, without] :
+         {std::pair(run.levels.front(), alone.levels.front()),
+          std::pair(run.levels.back(), alone.levels.back())})
+      EXPECT_LE(RandIndexDifference(FirstOf(with.face_labels, body.NumFaces()),
+                                    without.face_labels),
+                0.03)
+          << above;
+  }
+}
+
+// More of the area than the body, and no more than its hair. No two strands
+// lie along one line, where they would be sewn.
 TEST(BodiesTest, HairFollowsTheBody) {
   const TriangleMesh body = MakeCreature("humanoid").mesh;
   const RecordingSink clean = RunOn(body, Levels(2, Method::kMerge));
@@ -338,7 +351,9 @@ TEST(BodiesTest, HairFollowsTheBody) {
     const Eigen::RowVector3d root = body.positions.row(s % body.NumVertices());
     for (uint32_t i = 0; i < 8; ++i)
       mesh.positions.row(next + i) =
-          root + step * Eigen::RowVector3d(0.1 + i % 2 * 0.1, 0.1 + i / 2, 0.2);
+          root + step * Eigen::RowVector3d(
+                            (0.1 + i % 2 * 0.1) * std::cos(s), 0.1 + i / 2,
+                            0.2 + (0.1 + i % 2 * 0.1) * std::sin(s));
     for (uint32_t i = 0; i < 6; ++i)
       mesh.faces.push_back({next + i, next + i + 1, next + i + 2});
     next += 8;
@@ -358,9 +373,9 @@ TEST(BodiesTest, AnEyeFollowsTheHead) {
   creature.mesh.positions.col(1).maxCoeff(&top);
   const double diagonal = Diagonal(creature.mesh);
   const TriangleMesh mesh = Together(
-      creature.mesh, Moved(Scaled(Icosphere(2), 0.01 * diagonal),
-                           creature.mesh.positions.row(top) +
-                               Eigen::RowVector3d(0, 0.06 * diagonal, 0)));
+      {creature.mesh, Moved(Scaled(Icosphere(2), 0.01 * diagonal),
+                            creature.mesh.positions.row(top) +
+                                Eigen::RowVector3d(0, 0.06 * diagonal, 0))});
   const RecordingSink run = RunOn(mesh, Levels(3));
   EXPECT_EQ(run.mesh.report.attached_components, 1u);
   const Adjacency adjacency(creature.mesh);

@@ -1,0 +1,76 @@
+#include "core/diffusion/shell_scale.h"
+
+#include <memory>
+
+#include "core/operators/bridges.h"
+#include "core/operators/laplacian.h"
+#include "core/spectrum/solver.h"
+#include "gtest/gtest.h"
+#include "tests/testing/shapes.h"
+
+namespace marrow {
+namespace {
+
+// A ball of radius 1, and beside it a rod that is `length` times as long.
+TriangleMesh BallAndRod(double length) {
+  TriangleMesh rod = Icosphere(3);
+  rod.positions.col(0) *= 0.05;
+  rod.positions.col(1) *= length;
+  rod.positions.col(2) *= 0.05;
+  rod.positions.col(0).array() += 1.06;
+  return Together({Icosphere(3), rod});
+}
+
+struct Solved {
+  explicit Solved(const TriangleMesh& shape, uint32_t count = 60)
+      : mesh(CanonicalOf(shape)),
+        scale(mesh.mesh, FaceAreaShares(mesh.mesh), FindBridges(mesh.mesh)),
+        pairs(SolverEigenPairSource()
+                  .Get(mesh, count, CancelToken(), nullptr)
+                  .value()) {}
+
+  const CanonicalMesh mesh;
+  const ShellScale scale;
+  const std::shared_ptr<const EigenPairs> pairs;
+};
+
+TEST(ShellScaleTest, OneShellGoesByItsFirstMode) {
+  const Solved ball(Icosphere(3));
+  EXPECT_TRUE(ball.scale.empty());
+  EXPECT_EQ(ball.scale.Slowest(*ball.pairs), ball.pairs->eigenvalues[1]);
+}
+
+// The first eigenvalue of a sphere is 2 / r^2, and 2 A where areas are shares.
+TEST(ShellScaleTest, ALargeShellGoesByItsOwnFirstMode) {
+  for (double length : {4.0, 8.0}) {
+    const Solved both(BallAndRod(length));
+    const double sphere = 2 * both.mesh.report.area;
+    EXPECT_LT(both.pairs->eigenvalues[1], 0.5 * sphere) << length;
+    EXPECT_NEAR(both.scale.Slowest(*both.pairs), sphere, 0.1 * sphere);
+  }
+}
+
+// What is at hand beyond those that it takes does not matter.
+TEST(ShellScaleTest, MorePairsCannotMatter) {
+  const TriangleMesh mesh = BallAndRod(8);
+  const Solved few(mesh, ShellScale::kPairs + 1);
+  const Solved many(mesh, 100);
+  EXPECT_EQ(few.scale.Slowest(*few.pairs), many.scale.Slowest(*many.pairs));
+}
+
+// Of equal small shells none is the body.
+TEST(ShellScaleTest, SmallShellsGoByTheWhole) {
+  TriangleMesh row;
+  row.positions.resize(0, 3);
+  for (int i = 0; i < 4; ++i) {
+    TriangleMesh ball = Icosphere(2);
+    ball.positions.col(0).array() += 2 * i;
+    row = Together({row, ball});
+  }
+  const Solved balls(row);
+  EXPECT_TRUE(balls.scale.empty());
+  EXPECT_EQ(balls.scale.Slowest(*balls.pairs), balls.pairs->eigenvalues[1]);
+}
+
+}  // namespace
+}  // namespace marrow
