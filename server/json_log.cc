@@ -1,8 +1,6 @@
 #include "server/json_log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "absl/time/clock.h"
@@ -31,6 +29,29 @@ std::string Cut(const std::string& value) {
   return value.substr(0, kMaxValueBytes);
 }
 
+// The least LogLevel, as a number, that a --log-level lets through.
+int LeastOf(const std::string& level) {
+  for (const LogLevel each : {LogLevel::kDebug, LogLevel::kInfo,
+                              LogLevel::kWarning, LogLevel::kError}) {
+    if (level == NameOf(each)) return static_cast<int>(each);
+  }
+  return level == "trace" ? 0 : std::numeric_limits<int>::max();
+}
+
+std::string LineNow(const LogRecord& record) {
+  return ToJsonLine(record,
+                    absl::FormatTime("%Y-%m-%dT%H:%M:%E3SZ", absl::Now(),
+                                     absl::UTCTimeZone())) +
+         "\n";
+}
+
+std::string NoteOf(uint64_t dropped) {
+  return LineNow({LogLevel::kWarning,
+                  "log lines were dropped, as nobody read them",
+                  {{"dropped", std::to_string(dropped)}},
+                  {}});
+}
+
 }  // namespace
 
 std::string ToJsonLine(const LogRecord& record, const std::string& time) {
@@ -44,19 +65,12 @@ std::string ToJsonLine(const LogRecord& record, const std::string& time) {
                    nlohmann::ordered_json::error_handler_t::replace);
 }
 
-JsonLog::JsonLog(const std::string& level)
-    : logger_(std::make_shared<spdlog::logger>(
-          "marrow", std::make_shared<spdlog::sinks::stderr_sink_mt>())) {
-  logger_->set_pattern("%v");
-  logger_->set_level(spdlog::level::from_str(level));
-}
+JsonLog::JsonLog(const std::string& level, int fd)
+    : least_(LeastOf(level)), writer_(fd, &NoteOf) {}
 
 void JsonLog::Write(const LogRecord& record) {
-  const auto level = spdlog::level::from_str(NameOf(record.level));
-  if (!logger_->should_log(level)) return;
-  const std::string time = absl::FormatTime("%Y-%m-%dT%H:%M:%E3SZ", absl::Now(),
-                                            absl::UTCTimeZone());
-  logger_->log(level, "{}", ToJsonLine(record, time));
+  if (static_cast<int>(record.level) < least_) return;
+  writer_.Write(LineNow(record));
 }
 
 }  // namespace marrow

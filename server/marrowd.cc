@@ -10,12 +10,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "absl/strings/numbers.h"
+#include "absl/time/time.h"
 #include "server/json_log.h"
 #include "server/server.h"
 
@@ -30,6 +33,7 @@ using marrow::ServerOptions;
 constexpr int kExitUsage = 1;
 constexpr int kExitCannotListen = 2;
 constexpr int kSignalExitBase = 128;
+constexpr absl::Duration kLogPatience = absl::Seconds(2);
 
 struct Flags {
   ServerOptions options;
@@ -159,12 +163,27 @@ sigset_t StopSignals() {
   return set;
 }
 
-int WaitForStopSignal() {
+int NextStopSignal() {
   const sigset_t set = StopSignals();
   int signal = 0;
   while (sigwait(&set, &signal) != 0) {
   }
   return signal;
+}
+
+// The first signal. A second one ends the process at once, whatever that waits
+// for. Call it before any other thread is made, so that all inherit the mask
+// and none but the one that waits for signals sees them.
+std::future<int> TakeStopSignals() {
+  const sigset_t stop_signals = StopSignals();
+  pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
+  std::promise<int> first;
+  std::future<int> result = first.get_future();
+  std::thread([first = std::move(first)]() mutable {
+    first.set_value(NextStopSignal());
+    std::_Exit(kSignalExitBase + NextStopSignal());
+  }).detach();
+  return result;
 }
 
 // gRPC's own messages become records of ours, once the server listens: until
@@ -188,7 +207,7 @@ std::string Address(const ServerOptions& options, int port) {
          std::to_string(port);
 }
 
-int Serve(const Flags& flags, JsonLog& log) {
+int Serve(const Flags& flags, std::future<int> stop_signal, JsonLog& log) {
   auto server = Server::Start(flags.options);
   if (!server.ok()) {
     std::cerr << "marrowd: " << server.status().message() << std::endl;
@@ -201,25 +220,20 @@ int Serve(const Flags& flags, JsonLog& log) {
             << std::endl;
   log.Write({LogLevel::kInfo, "listening", {{"address", address}}, {}});
 
-  const int signal = WaitForStopSignal();
+  const int signal = stop_signal.get();
   log.Write({LogLevel::kInfo, "draining", {{"signal", strsignal(signal)}}, {}});
-  std::thread([] {
-    std::_Exit(kSignalExitBase + WaitForStopSignal());
-  }).detach();
   (*server)->Drain(std::chrono::milliseconds(
       static_cast<int64_t>(flags.grace_seconds * 1000)));
   server->reset();
   log.Write({LogLevel::kInfo, "stopped", {}, {}});
+  log.Flush(kLogPatience);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Before any thread is made, so that all inherit it and only sigwait() sees
-  // the signals.
-  const sigset_t stop_signals = StopSignals();
-  pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
+  std::future<int> stop_signal = TakeStopSignals();
   signal(SIGPIPE, SIG_IGN);
 
   CLI::App app(
@@ -243,5 +257,5 @@ int main(int argc, char** argv) {
   grpc_log = &log;
   gpr_set_log_function(&LogFromGrpc);
   flags.options.log = [&log](const LogRecord& record) { log.Write(record); };
-  return Serve(flags, log);
+  return Serve(flags, std::move(stop_signal), log);
 }

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "marrow/v1/capabilities_service.grpc.pb.h"
 #include "marrow/v1/segmentation_service.grpc.pb.h"
 #include "server/server.h"
 #include "tests/server/test_mesh.h"
@@ -25,14 +26,27 @@ namespace {
 
 using ::testing::HasSubstr;
 
+// As after a reader that hangs.
+void FillPipe(int fd) {
+  const std::string bytes(4096, '\n');
+  fcntl(fd, F_SETFL, O_NONBLOCK);
+  while (write(fd, bytes.data(), bytes.size()) > 0) {
+  }
+  fcntl(fd, F_SETFL, 0);
+}
+
+enum class LogPipe { kEmpty, kFull };
+
 // marrowd with its output in pipes.
 class Daemon {
  public:
-  explicit Daemon(std::vector<std::string> arguments) {
+  explicit Daemon(std::vector<std::string> arguments,
+                  LogPipe log = LogPipe::kEmpty) {
     int out[2];
     int err[2];
     EXPECT_EQ(pipe2(out, O_CLOEXEC), 0);
     EXPECT_EQ(pipe2(err, O_CLOEXEC), 0);
+    if (log == LogPipe::kFull) FillPipe(err[1]);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
@@ -60,6 +74,17 @@ class Daemon {
   }
 
   void Signal(int signal) { kill(pid_, signal); }
+
+  // Whether it ends by itself, within half a minute.
+  bool Ends() const {
+    siginfo_t info{};
+    for (int i = 0; i < 3000 && info.si_pid == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      waitid(P_PID, static_cast<id_t>(pid_), &info,
+             WEXITED | WNOHANG | WNOWAIT);
+    }
+    return info.si_pid != 0;
+  }
 
   // The exit code.
   int Wait() {
@@ -160,6 +185,21 @@ TEST(MarrowdTest, TheLogIsJsonLines) {
   EXPECT_EQ(call["mesh"].get<std::string>().size(), 12u);
   EXPECT_GT(call["seconds"].get<double>(), 0);
   EXPECT_FALSE(call["job"].get<std::string>().empty());
+}
+
+TEST(MarrowdTest, WhoeverHangsReadingTheLogHoldsUpNoCallAndNoSignal) {
+  Daemon daemon({"--port", "0"}, LogPipe::kFull);
+  const auto channel =
+      grpc::CreateChannel(daemon.Address(), grpc::InsecureChannelCredentials());
+  const auto stub = v1::CapabilitiesService::NewStub(channel);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() +
+                       std::chrono::seconds(30));
+  v1::GetCapabilitiesResponse response;
+  EXPECT_TRUE(stub->GetCapabilities(&context, {}, &response).ok());
+  daemon.Signal(SIGTERM);
+  ASSERT_TRUE(daemon.Ends());
+  EXPECT_EQ(daemon.Wait(), 0);
 }
 
 TEST(MarrowdTest, GraceEndsARunningCall) {
