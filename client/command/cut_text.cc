@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "client/command/number_text.h"
 
 namespace marrow::client {
 namespace {
@@ -19,11 +19,11 @@ bool Read(const std::string& text, v1::Cut& cut) {
   const std::string value = text.substr(colon + 1);
   uint32_t count = 0;
   double salience = 0;
-  if (kind == "level" && absl::SimpleAtoi(value, &count)) {
+  if (kind == "level" && ReadWholeNumber(value, count)) {
     cut.set_level(count);
-  } else if (kind == "segments" && absl::SimpleAtoi(value, &count)) {
+  } else if (kind == "segments" && ReadWholeNumber(value, count)) {
     cut.set_segments(count);
-  } else if (kind == "salience" && absl::SimpleAtod(value, &salience)) {
+  } else if (kind == "salience" && ReadNumber(value, salience)) {
     cut.set_salience(salience);
   } else {
     return false;

@@ -10,8 +10,8 @@
 namespace marrow::client {
 
 // Empty for auto, level:N, segments:N and salience:X, where N is a whole and X
-// any number; else what is wrong and what is allowed. Ranges are the server's
-// business.
+// any number, as number_text.h reads them; else what is wrong and what is
+// allowed. Ranges are the server's business.
 std::string CheckCutText(const std::string& text);
 
 // REQUIRES: CheckCutText(choice.text) is empty.

@@ -26,6 +26,12 @@ std::string OptionOf(const std::string& field) {
   return "";
 }
 
+// Whether the field is one node of the tree, as cut.open[1]: which there are
+// depends on the mesh.
+bool IsNode(const std::string& field) {
+  return field.starts_with("cut.") && field.ends_with("]");
+}
+
 // How Client::Connect() begins.
 constexpr char kCannotReach[] = "cannot reach";
 
@@ -72,7 +78,8 @@ std::string ExplainFor(const std::string& file, const absl::Status& status) {
 int ExitCodeOf(const absl::Status& status) {
   if (status.ok()) return kExitOk;
   if (IsUnreachable(status)) return kExitUnreachable;
-  return OptionOf(FieldOf(status)).empty() ? kExitFailed : kExitUsage;
+  const std::string field = FieldOf(status);
+  return OptionOf(field).empty() || IsNode(field) ? kExitFailed : kExitUsage;
 }
 
 bool ConcernsAllFiles(const absl::Status& status) {

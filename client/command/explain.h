@@ -20,7 +20,7 @@ std::string ExplainFor(const std::string& file, const absl::Status& status);
 int ExitCodeOf(const absl::Status& status);
 
 // Whether every other file of the same command would fail as well: an option
-// has an impossible value, or the server is gone.
+// has a value that no mesh allows, or the server is gone.
 bool ConcernsAllFiles(const absl::Status& status);
 
 // {event: "error", code, message, and reason and field where there are}.

@@ -1,17 +1,17 @@
 #include "client/command/parse.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <map>
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/command/arguments.h"
 #include "client/command/commands.h"
 #include "client/command/cut_text.h"
 #include "client/command/exit_code.h"
+#include "client/command/number_text.h"
 
 namespace marrow::client {
 namespace {
@@ -112,21 +112,20 @@ constexpr char kHealthFooter[] =
 
 std::string CheckNumber(const std::string& text) {
   double value = 0;
-  return absl::SimpleAtod(text, &value)
-             ? ""
-             : absl::StrCat("'", text, "' is no number");
+  return ReadNumber(text, value) ? ""
+                                 : absl::StrCat("'", text, "' is no number");
 }
 
 std::string CheckWholeNumber(const std::string& text) {
   uint32_t value = 0;
-  return absl::SimpleAtoi(text, &value)
+  return ReadWholeNumber(text, value)
              ? ""
              : absl::StrCat("'", text, "' is no whole number");
 }
 
 std::string CheckSeconds(const std::string& text) {
   double value = 0;
-  return absl::SimpleAtod(text, &value) && value > 0 && std::isfinite(value)
+  return ReadNumber(text, value) && value > 0
              ? ""
              : absl::StrCat("'", text, "' is no number of seconds above 0");
 }
@@ -171,14 +170,28 @@ void AddPairs(CLI::App& app, const std::string& names,
       ->type_name("N");
 }
 
+// METHOD_UNSPECIFIED for a name of none.
+v1::Method MethodOf(const std::string& name) {
+  if (name == "merge") return v1::METHOD_MERGE;
+  return name == "paper" ? v1::METHOD_PAPER : v1::METHOD_UNSPECIFIED;
+}
+
+std::string CheckMethod(const std::string& name) {
+  return MethodOf(name) != v1::METHOD_UNSPECIFIED
+             ? ""
+             : absl::StrCat("'", name, "' is neither merge nor paper");
+}
+
 // A value's range is the server's business, so that there is one place for it.
 void AddMethod(CLI::App& app, MethodArguments& arguments) {
-  const std::map<std::string, v1::Method> methods = {
-      {"paper", v1::METHOD_PAPER}, {"merge", v1::METHOD_MERGE}};
-  app.add_option("--method", arguments.method,
-                 "merge: merge pieces across their weakest boundaries; paper: "
-                 "split from the top (merge)")
-      ->transform(CLI::CheckedTransformer(methods).description(""))
+  app.add_option_function<std::string>(
+         "--method",
+         [&arguments](const std::string& name) {
+           arguments.method = MethodOf(name);
+         },
+         "merge: merge pieces across their weakest boundaries; paper: "
+         "split from the top (merge)")
+      ->check(CheckMethod)
       ->type_name("NAME");
   app.add_option("--kappa", arguments.kappa,
                  "Of --method paper: higher gives fewer segments, 0.1 to 10 "
@@ -204,22 +217,38 @@ void AddMethod(CLI::App& app, MethodArguments& arguments) {
       ->type_name("N");
 }
 
+// Ids with commas between them in one word, so that a file may follow; several
+// such options add up.
+void AddIds(CLI::App& app, const std::string& name, std::vector<uint32_t>& ids,
+            const std::string& about) {
+  app.add_option(name, ids, about)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CheckWholeNumber)
+      ->type_name("IDS");
+}
+
+void CheckNodes(const CutChoice& cut) {
+  for (const uint32_t id : cut.open) {
+    if (std::count(cut.closed.begin(), cut.closed.end(), id) == 0) continue;
+    throw CLI::ValidationError("--open",
+                               absl::StrCat("is ", id,
+                                            ", and so is --closed: a node is "
+                                            "held open or closed"));
+  }
+}
+
 void AddCut(CLI::App& app, CutChoice& arguments) {
   app.add_option("--cut", arguments.text,
                  "Which segments of the tree to take: auto, level:N, "
                  "segments:N (at most N) or salience:X, 0 to 1 (auto)")
       ->check(CheckCutText)
       ->type_name("CUT");
-  app.add_option("--closed", arguments.closed,
-                 "Ids of nodes that the cut never splits, such as 3,7")
-      ->delimiter(',')
-      ->check(CheckWholeNumber)
-      ->type_name("IDS");
-  app.add_option("--open", arguments.open,
-                 "Ids of nodes that the cut splits into their children")
-      ->delimiter(',')
-      ->check(CheckWholeNumber)
-      ->type_name("IDS");
+  AddIds(app, "--closed", arguments.closed,
+         "Ids of nodes that the cut never splits, such as 3,7");
+  AddIds(app, "--open", arguments.open,
+         "Ids of nodes that the cut splits into their children");
+  app.callback([&arguments] { CheckNodes(arguments); });
 }
 
 void AddOutput(CLI::App& app, std::string& folder) {

@@ -33,9 +33,27 @@ TEST(CutTextTest, SaysWhatIsMeant) {
 }
 
 TEST(CutTextTest, WhatIsNoneSaysWhatIsAllowed) {
-  for (const char* bad :
-       {"", "automatic", "level", "level:", "level:x", "level:-1", "level:1.5",
-        "segments:99999999999", "segment:3", "salience:much", ":3", "5"}) {
+  for (const char* bad : {"",
+                          "automatic",
+                          "level",
+                          "level:",
+                          "level:x",
+                          "level:-1",
+                          "level:1.5",
+                          "segments:99999999999",
+                          "segment:3",
+                          "salience:much",
+                          ":3",
+                          "5",
+                          "level: 1",
+                          "level:+1",
+                          "level:-0",
+                          "level:010",
+                          "level:1 ",
+                          "salience:0x1p-1",
+                          "salience: 0.5",
+                          "salience:nan",
+                          "salience:"}) {
     EXPECT_THAT(CheckCutText(bad),
                 HasSubstr("is no cut; allowed are auto, level:N"))
         << bad;

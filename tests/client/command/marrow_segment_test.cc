@@ -259,7 +259,7 @@ TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
       {"--tolerance", "9"},    {"--levels", "0"},    {"--levels", "9"},
       {"--pairs", "x"},        {"--timeout", "0"},   {"--quantize", "31"},
       {"--method", "guess"},   {"--cut", "level:4"}, {"--cut", "segments:0"},
-      {"--cut", "salience:2"}, {"--cut", "half"},    {"--open", "9999"},
+      {"--cut", "salience:2"}, {"--cut", "half"},    {"--open", "x"},
       {"--closed", "x"}};
   for (const auto& [option, value] : cases) {
     const Finished run = Segment({Sample(), option, value});
@@ -306,6 +306,36 @@ TEST_F(MarrowSegmentTest, TheCutIsTheCallersChoice) {
   const json open = cut_by({"--cut", "segments:1", "--open", "0,0"});
   EXPECT_GT(open["number"], 1);
   EXPECT_EQ(open["open"], json::parse("[0,0]"));
+}
+
+TEST_F(MarrowSegmentTest, OptionsOfNodesStandAnywhere) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--closed", "1,2", "--closed", "3", Sample()},
+        {Sample(), "--closed", "1,2", "--closed", "3"},
+        {"--closed", "1,2,3", Sample()}}) {
+    const Finished run = Segment(arguments);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(json::parse(ReadFile(Out("octopus.json")))["cut"]["closed"],
+              json::parse("[1,2,3]"));
+  }
+}
+
+TEST_F(MarrowSegmentTest, ANodeThatOneMeshLacksIsThatFilesFailure) {
+  WriteFile(folder_ / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  for (const char* option : {"--closed", "--open"}) {
+    const Finished run =
+        Segment({folder_ / "one.off", Sample(), "--threads", "1", option, "1"});
+    EXPECT_EQ(run.code, 1);
+    EXPECT_THAT(run.err, HasSubstr("one.off: " + std::string(option) +
+                                   " is 1; the tree has the nodes 0 to 0"));
+    EXPECT_THAT(run.out, HasSubstr("1 segmented, 1 failed"));
+  }
+}
+
+TEST_F(MarrowSegmentTest, ANodeBothOpenAndClosedIsAUsageError) {
+  const Finished run = Segment({"--open", "1", "--closed", "2,1", Sample()});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--open: is 1, and so is --closed"));
 }
 
 TEST_F(MarrowSegmentTest, WithoutAServerACutIsMadeAnew) {

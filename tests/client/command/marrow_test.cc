@@ -76,7 +76,11 @@ TEST(MarrowTest, ValuesThatAreNoneAreNamed) {
       {"--kappa", "", "--kappa: '' is no number"},
       {"--kappa", "abc", "--kappa: 'abc' is no number"},
       {"--pairs", "2.5", "--pairs: '2.5' is no whole number"},
+      {"--pairs", "010", "--pairs: '010' is no whole number"},
       {"--levels", "-1", "--levels: '-1' is no whole number"},
+      {"--method", "PAPER", "--method: 'PAPER' is neither merge nor paper"},
+      {"--method", "1", "--method: '1' is neither merge nor paper"},
+      {"--closed", "3,x", "--closed: 'x' is no whole number"},
       {"--timeout", "nan", "--timeout: 'nan' is no number of seconds"},
       {"--timeout", "0", "--timeout: '0' is no number of seconds"},
       {"--quantize", "31", "--quantize"}};
