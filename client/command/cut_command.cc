@@ -84,7 +84,8 @@ absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
   if (call.interrupted()) return absl::CancelledError("interrupted");
   MARROW_RETURN_IF_ERROR(PrepareFolder(arguments.folder).status());
   MARROW_RETURN_IF_ERROR(
-      PublishResults(arguments.folder, StemOf(name), files, ResultScope::kCut));
+      PublishResults(arguments.folder, StemOf(name), files,
+                     {.scope = ResultScope::kCut, .inputs = {arguments.file}}));
   Tell(arguments, answer, files);
   return absl::OkStatus();
 }

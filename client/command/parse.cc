@@ -53,9 +53,10 @@ constexpr char kSegmentFooter[] =
                       with --png: a picture with the skeleton
   STEM.parts.obj      with --parts: each segment of the cut an object
 Labels are the ids of the tree's nodes in STEM.json, and, of segments of the
-cut that are no nodes, those in its "cut". What an earlier run left
-of these for STEM is replaced as a whole. The STEM of standard input (-) is
-stdin.
+cut that are no nodes, those in its "cut". What an earlier run wrote for STEM,
+as STEM.json lists it, is replaced as a whole; a file of another's is written
+over where it has one of these names, and is left alone otherwise. The STEM of
+standard input (-) is stdin.
 
 With --json each event is a line {"event": ..., "file": ...} on standard
 output: accepted, progress, mesh_report, level, skeleton, warning, cut, then
@@ -75,7 +76,8 @@ the file is segmented anew. For FILE = path/STEM.ext these appear in DIR:
   STEM.cut.json       the segments and the skeleton
   STEM.cut.png        with --png: a picture with the skeleton
   STEM.cut.parts.obj  with --parts: each segment an object
-What was there of these is replaced, other results of STEM are left alone.)";
+What an earlier run wrote of these is replaced, other results of STEM are left
+alone.)";
 
 constexpr char kSpectrumFooter[] =
     R"(Prints the eigenvalues of the Laplace-Beltrami operator, ascending, one a line,

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "client/atomic_file.h"
+#include "client/command/earlier_results.h"
 #include "core/base/status_macros.h"
 
 namespace marrow::client {
@@ -102,20 +104,47 @@ class Renames {
   std::vector<std::pair<fs::path, fs::path>> done_;
 };
 
-std::vector<fs::path> OldResults(const std::string& folder,
-                                 const std::string& stem, ResultScope scope) {
-  std::vector<fs::path> result;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end;
-       it.increment(error)) {
-    const fs::file_status status = it->symlink_status(error);
-    if (!error && (fs::is_regular_file(status) || fs::is_symlink(status)) &&
-        IsResultName(stem, it->path().filename().string(), scope)) {
-      result.push_back(it->path().filename());
+// Whether a file that can be replaced has this name; folders cannot.
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(path, ignored);
+  return fs::is_regular_file(status) || fs::is_symlink(status);
+}
+
+bool IsAnyOf(const fs::path& path, const std::vector<std::string>& inputs) {
+  return std::any_of(inputs.begin(), inputs.end(),
+                     [&](const std::string& input) {
+                       std::error_code ignored;
+                       return fs::equivalent(path, input, ignored);
+                     });
+}
+
+// What goes when `files` come: results of earlier runs, and whatever has a name
+// of theirs. Inputs stay.
+absl::StatusOr<std::vector<std::string>> ToReplace(
+    const std::string& folder, const std::string& stem,
+    const std::vector<ResultFile>& files, const PublishOptions& options) {
+  std::set<std::string> names;
+  for (const std::string& name : EarlierResults(folder, stem)) {
+    if (IsResultName(stem, name, options.scope) &&
+        !IsAnyOf(fs::path(folder) / name, options.inputs)) {
+      names.insert(name);
     }
   }
-  std::sort(result.begin(), result.end());
-  return result;
+  for (const ResultFile& file : files) {
+    const fs::path path = fs::path(folder) / file.name;
+    if (IsAnyOf(path, options.inputs)) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(path.string(),
+                       ": is an input, and a result would take its place; "
+                       "choose another folder with -o"));
+    }
+    names.insert(file.name);
+  }
+  std::erase_if(names, [&](const std::string& name) {
+    return !IsFile(fs::path(folder) / name);
+  });
+  return std::vector<std::string>(names.begin(), names.end());
 }
 
 absl::Status WriteAll(const fs::path& staging, const fs::path& folder,
@@ -187,14 +216,16 @@ bool IsResultName(const std::string& stem, const std::string& name,
 
 absl::Status PublishResults(const std::string& folder, const std::string& stem,
                             const std::vector<ResultFile>& files,
-                            ResultScope scope) {
+                            const PublishOptions& options) {
+  MARROW_ASSIGN_OR_RETURN(const std::vector<std::string> replaced,
+                          ToReplace(folder, stem, files, options));
   MARROW_ASSIGN_OR_RETURN(const StagingFolder staging,
                           StagingFolder::Make(folder));
   MARROW_RETURN_IF_ERROR(WriteAll(staging.path(), folder, files));
   MARROW_ASSIGN_OR_RETURN(const StagingFolder old, StagingFolder::Make(folder));
   Renames renames;
-  for (const fs::path& name : OldResults(folder, stem, scope)) {
-    const fs::path path = folder / name;
+  for (const std::string& name : replaced) {
+    const fs::path path = fs::path(folder) / name;
     MARROW_RETURN_IF_ERROR(renames.Do(path, old.path() / name, path));
   }
   for (const ResultFile& file : files) {

@@ -32,15 +32,21 @@ enum class ResultScope {
   kCut,  // STEM.cut.*: a new cut leaves the others alone
 };
 
-// Replaces the results of `stem` in `folder` by `files`: those of an earlier
-// run that this one does not write again (a deeper level, a picture) go. Until
-// all are written the old ones stand; after an error they still do. Results
-// are what IsResultName() says; other files, and folders, are left alone.
+struct PublishOptions {
+  ResultScope scope = ResultScope::kAll;
+  std::vector<std::string> inputs;  // files that stay, whatever they are called
+};
+
+// Puts `files` into `folder`, over what has their names. What EarlierResults()
+// knows of `stem` and this run does not write again (a deeper level, a picture)
+// goes. Until all are written the old ones stand; after an error they still do.
+// Other files, and folders, are left alone.
 //
-// Errors: those of WriteFileAtomically.
+// Errors: those of WriteFileAtomically; FAILED_PRECONDITION where an input or a
+// folder has a result's name.
 absl::Status PublishResults(const std::string& folder, const std::string& stem,
                             const std::vector<ResultFile>& files,
-                            ResultScope scope = ResultScope::kAll);
+                            const PublishOptions& options = {});
 
 // STEM.seg, STEM.json, STEM.parts.obj, STEM.level-N.{seg,ply,png},
 // STEM.cut.{seg,ply,png,json,parts.obj}.

@@ -49,6 +49,14 @@ CutNote NoteOf(const CutChoice& cut) {
   return {cut.text, cut.closed, cut.open};
 }
 
+std::vector<std::string> NamesOf(const std::vector<ResultFile>& files,
+                                 const std::string& last) {
+  std::vector<std::string> names;
+  for (const ResultFile& file : files) names.push_back(file.name);
+  names.push_back(last);
+  return names;
+}
+
 size_t NumSegments(const Level& level) {
   return std::set<uint32_t>(level.face_labels.begin(), level.face_labels.end())
       .size();
@@ -81,8 +89,6 @@ absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
   const std::vector<uint32_t>& labels = segmentation.CutLevel().face_labels;
   std::vector<ResultFile> files;
   files.push_back({stem + ".seg", SegFile(labels)});
-  files.push_back(
-      {stem + ".json", JsonFile(name, mesh, segmentation, NoteOf(cut))});
   if (segmentation.cut.has_value()) {
     MARROW_RETURN_IF_ERROR(AddLevelFiles(
         stem + ".cut", mesh, segmentation.cut->level, options.png, files));
@@ -96,6 +102,9 @@ absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
     MARROW_ASSIGN_OR_RETURN(std::string obj, PartsObjFile(mesh, labels));
     files.push_back({stem + ".parts.obj", std::move(obj)});
   }
+  const std::string record = stem + ".json";
+  files.push_back({record, JsonFile(name, mesh, segmentation, NoteOf(cut),
+                                    NamesOf(files, record))});
   return files;
 }
 
@@ -106,13 +115,14 @@ absl::StatusOr<std::vector<ResultFile>> MakeCutFiles(
   std::vector<ResultFile> files;
   MARROW_RETURN_IF_ERROR(
       AddLevelFiles(stem, mesh, answer.cut.level, options.png, files));
-  files.push_back(
-      {stem + ".json", CutJsonFile(name, mesh, answer, NoteOf(cut))});
   if (options.parts) {
     MARROW_ASSIGN_OR_RETURN(std::string obj,
                             PartsObjFile(mesh, answer.cut.level.face_labels));
     files.push_back({stem + ".parts.obj", std::move(obj)});
   }
+  const std::string record = stem + ".json";
+  files.push_back({record, CutJsonFile(name, mesh, answer, NoteOf(cut),
+                                       NamesOf(files, record))});
   return files;
 }
 

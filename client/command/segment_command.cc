@@ -102,8 +102,8 @@ class SegmentRun {
     MARROW_ASSIGN_OR_RETURN(const std::vector<ResultFile> files,
                             ResultsOf(path, input.mesh, segmentation));
     if (call_.interrupted()) return absl::CancelledError("interrupted");
-    MARROW_RETURN_IF_ERROR(
-        PublishResults(arguments_.folder, StemOf(path), files));
+    MARROW_RETURN_IF_ERROR(PublishResults(arguments_.folder, StemOf(path),
+                                          files, {.inputs = arguments_.files}));
     Tell(file, segmentation, files, absl::Now() - start);
     return absl::OkStatus();
   }

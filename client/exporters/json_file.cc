@@ -123,7 +123,8 @@ Json MeshJson(std::string_view name, const PolygonMesh& mesh) {
 
 std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
                      const client::Segmentation& segmentation,
-                     const CutNote& asked) {
+                     const CutNote& asked,
+                     const std::vector<std::string>& files) {
   Json nodes = Json::array();
   for (const SegmentNode& node : segmentation.nodes) {
     nodes.push_back(NodeJson(node));
@@ -136,6 +137,7 @@ std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
   }
   const Json root = {
       {"schema", kJsonSchema},
+      {"files", files},
       {"mesh", MeshJson(mesh_name, mesh)},
       {"tree", {{"nodes", nodes}}},
       {"automatic_cut", {{"level", segmentation.AutomaticLevel().level}}},
@@ -150,8 +152,10 @@ std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
 }
 
 std::string CutJsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
-                        const client::CutAnswer& answer, const CutNote& asked) {
+                        const client::CutAnswer& answer, const CutNote& asked,
+                        const std::vector<std::string>& files) {
   return Format({{"schema", kCutJsonSchema},
+                 {"files", files},
                  {"mesh", MeshJson(mesh_name, mesh)},
                  {"cut", CutJson(answer.cut, asked)},
                  {"timings", answer.timings},

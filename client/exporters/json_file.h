@@ -22,20 +22,23 @@ struct CutNote {
   std::vector<uint32_t> open;
 };
 
-// `mesh_name` is what the user calls the mesh, such as the file's name. Bytes
-// that are not UTF-8, there or in the segmentation, become U+FFFD; numbers that
-// are not finite become null. Finite numbers read back exactly. The order of
-// the keys is fixed.
+// `mesh_name` is what the user calls the mesh, such as the file's name, and
+// `files` are the names of what is written together, this file among them.
+// Bytes that are not UTF-8, there or in the segmentation, become U+FFFD;
+// numbers that are not finite become null. Finite numbers read back exactly.
+// The order of the keys is fixed.
 std::string JsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
                      const client::Segmentation& segmentation,
-                     const CutNote& asked = {});
+                     const CutNote& asked = {},
+                     const std::vector<std::string>& files = {});
 
 // The schema that CutJsonFile writes.
 inline constexpr std::string_view kCutJsonSchema = "marrow.cut/1";
 
 // The same of a cut alone.
 std::string CutJsonFile(std::string_view mesh_name, const PolygonMesh& mesh,
-                        const client::CutAnswer& answer, const CutNote& asked);
+                        const client::CutAnswer& answer, const CutNote& asked,
+                        const std::vector<std::string>& files = {});
 
 }  // namespace marrow
 

@@ -160,11 +160,18 @@ TEST_F(MarrowSegmentTest, LevelsAreNested) {
 
 TEST_F(MarrowSegmentTest, FewerLevelsLeaveNothingOfADeeperRun) {
   ASSERT_EQ(Segment({Sample(), "--png", "--parts"}).code, 0);
+  json listed = json::parse(ReadFile(Out("octopus.json")))["files"];
+  std::sort(listed.begin(), listed.end());
+  EXPECT_EQ(listed, json(ListFolder(Out())));
+  WriteFile(Out("octopus.level-7.png"), "mine");
+  ASSERT_EQ(Segment({Sample(), "--levels", "1"}).code, 0);
+  WriteFile(Out("octopus.parts.obj"), "mine");
   ASSERT_EQ(Segment({Sample(), "--levels", "1"}).code, 0);
   EXPECT_THAT(
       ListFolder(Out()),
       ElementsAre("octopus.cut.ply", "octopus.cut.seg", "octopus.json",
-                  "octopus.level-1.ply", "octopus.level-1.seg", "octopus.seg"));
+                  "octopus.level-1.ply", "octopus.level-1.seg",
+                  "octopus.level-7.png", "octopus.parts.obj", "octopus.seg"));
   EXPECT_EQ(ReadFile(Out("octopus.seg")), ReadFile(Out("octopus.cut.seg")));
 }
 

@@ -57,9 +57,10 @@ TEST(JsonFileTest, HasTheDocumentedKeysInOrder) {
   const Json root = Json::parse(Write(MakeSegmentation()));
   std::vector<std::string> keys;
   for (const auto& [key, value] : root.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre(
-                        "schema", "mesh", "tree", "automatic_cut", "cut",
-                        "levels", "skeletons", "report", "timings", "cache"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("schema", "files", "mesh", "tree",
+                                 "automatic_cut", "cut", "levels", "skeletons",
+                                 "report", "timings", "cache"));
   EXPECT_TRUE(root["cut"].is_null());
   EXPECT_EQ(root["schema"], "marrow.segmentation/1");
   EXPECT_EQ(root["mesh"], Json::parse(R"({"name": "strip.obj",
@@ -156,6 +157,7 @@ TEST(JsonFileTest, WritesTheCut) {
       CutJsonFile("strip.obj", MakeStrip().mesh,
                   {MakeCut(), {{"total", 1}}, {{"result", "hit"}}}, asked));
   EXPECT_EQ(alone["schema"], "marrow.cut/1");
+  EXPECT_TRUE(alone["files"].empty());
   EXPECT_EQ(alone["mesh"]["faces"], 5);
   EXPECT_EQ(alone["cut"], cut);
   EXPECT_EQ(alone["cache"]["result"], "hit");
