@@ -61,9 +61,16 @@ absl::StatusOr<Inspection> ParseInspection(
   return inspection;
 }
 
-// Whether a Segment call would need no solver. Of no use once cancelled.
-bool IsCached(ServiceContext& context, CanonicalMesh& mesh, uint32_t count,
-              const CancelToken& cancel) {
+// Whether a Segment call with so many pairs would need no solver. Which of them
+// it takes is known once it has run: then by its result, else where all are
+// there. Of no use once cancelled.
+bool IsCached(ServiceContext& context, const MeshDigest& digest,
+              CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel) {
+  SegmentationOptions options;
+  options.eigen_pairs = count;
+  if (context.results.Find(ResultCache::KeyOf(digest, options)) != nullptr) {
+    return true;
+  }
   const Bodies bodies = FindBodies(mesh, cancel);
   return std::all_of(bodies.bodies.begin(), bodies.bodies.end(),
                      [&](const Body& body) {
@@ -81,7 +88,8 @@ absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
                                context.options.mesh_limits, cancel));
   const uint32_t count = inspection.eigen_pairs;
   v1::InspectMeshResponse response;
-  response.set_spectrum_cached(IsCached(context, mesh, count, cancel));
+  response.set_spectrum_cached(
+      IsCached(context, inspection.payload.digest, mesh, count, cancel));
   MARROW_RETURN_IF_ERROR(cancel.Check());
   SetMeshReport(mesh.report, response.mutable_report());
   SetPrediction(mesh.report, count, response.mutable_report());

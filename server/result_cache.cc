@@ -8,6 +8,7 @@ Digest ResultCache::KeyOf(const MeshDigest& mesh,
                           const SegmentationOptions& options) {
   DigestBuilder key("marrow result 1");
   key.AddString(mesh.sha256.Hex());
+  key.AddU64(mesh.size_bytes);
   key.AddU64(static_cast<uint64_t>(options.method));
   for (const double value : {options.split.kappa, options.split.delta,
                              options.split.epsilon, options.split.tolerance}) {

@@ -200,10 +200,12 @@ std::string SegmentJobKey(const MeshDigest& mesh,
 }
 
 void RunSegmentJob(ServiceContext& context, const Payload& payload,
-                   const SegmentParameters& parameters, SegmentJob& job) {
+                   const SegmentParameters& parameters,
+                   std::shared_ptr<const SegmentedMesh> kept, SegmentJob& job) {
   const Clock::time_point begin = Clock::now();
   const Digest key = ResultCache::KeyOf(payload.digest, parameters.options);
-  const std::shared_ptr<const SegmentedMesh> kept = context.results.Find(key);
+  // Another call may have left it while this one waited for a thread.
+  if (kept == nullptr) kept = context.results.Find(key);
   JobEigenPairs pairs(context.spectra);
   JobSink sink(parameters, job);
   const absl::Status status = RunGuarded(*job.cancel(), [&] {

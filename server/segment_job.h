@@ -18,9 +18,12 @@ using SegmentJob = Job<v1::SegmentEvent>;
 std::string SegmentJobKey(const MeshDigest& mesh,
                           const SegmentParameters& parameters);
 
-// Computes on the calling thread and ends the job.
+// Computes on the calling thread and ends the job. `kept` is the result for
+// these parameters where it is at hand, which takes milliseconds; null: it is
+// looked for once more, or computed and kept.
 void RunSegmentJob(ServiceContext& context, const Payload& payload,
-                   const SegmentParameters& parameters, SegmentJob& job);
+                   const SegmentParameters& parameters,
+                   std::shared_ptr<const SegmentedMesh> kept, SegmentJob& job);
 
 }  // namespace marrow
 

@@ -40,9 +40,12 @@ absl::StatusOr<Plan> MakePlan(ServiceContext& context,
   plan.open = [digest = payload.digest](SegmentJob& job) {
     Accept(digest, job);
   };
-  plan.run = [&context, payload, parameters](SegmentJob& job) {
-    RunSegmentJob(context, payload, parameters, job);
+  const auto kept = context.results.Find(
+      ResultCache::KeyOf(payload.digest, parameters.options));
+  plan.run = [&context, payload, parameters, kept](SegmentJob& job) {
+    RunSegmentJob(context, payload, parameters, kept, job);
   };
+  plan.quick = kept != nullptr;
   return plan;
 }
 
@@ -59,6 +62,8 @@ absl::StatusOr<Plan> MakeCutPlan(ServiceContext& context,
   MARROW_ASSIGN_OR_RETURN(const SegmentParameters parameters,
                           ParseCutParameters(request));
   stream.Describe("mesh", digest.sha256.Hex().substr(0, 12));
+  // Whether the store knows this mesh by another size.
+  MARROW_RETURN_IF_ERROR(context.store.Find(digest).status());
   const auto kept =
       context.results.Find(ResultCache::KeyOf(digest, parameters.options));
   if (kept == nullptr) return NotCached(digest.sha256);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -238,8 +239,9 @@ TEST_F(CutTest, AWarmSegmentTellsTheSameWithoutComputing) {
   EXPECT_EQ(runs_, 1);
 }
 
-TEST_F(CutTest, DoesNotWaitForSolvers) {
+TEST_F(CutTest, NeitherCutsNorWarmSegmentsWaitForSolversOrAreRefused) {
   options_.compute_threads = 1;
+  options_.max_queued_jobs = 0;
   Start();
   const v1::CutRequest request = AfterSegmenting(Merging());
   solver_->hold = true;
@@ -247,11 +249,25 @@ TEST_F(CutTest, DoesNotWaitForSolvers) {
   auto reader = segmentation_->Segment(&context, Merging(4));
   EXPECT_TRUE(WaitUntil([&] { return solver_->calls == 2; }));
   EXPECT_TRUE(Cut(request).status.ok());
+  grpc::ClientContext bounded;
+  bounded.set_deadline(std::chrono::system_clock::now() +
+                       std::chrono::seconds(30));
+  const Answer warm = Segment(Merging(), bounded);
+  ASSERT_TRUE(warm.status.ok()) << warm.status.error_message();
+  EXPECT_EQ(warm.completed().result(), v1::CACHE_OUTCOME_HIT);
   solver_->hold = false;
   v1::SegmentEvent event;
   while (reader->Read(&event)) {
   }
   EXPECT_TRUE(reader->Finish().ok());
+}
+
+TEST_F(CutTest, AKnownDigestOfAnotherSizeIsNotTaken) {
+  Start();
+  v1::CutRequest request = AfterSegmenting(Merging());
+  v1::MeshDigest& digest = *request.mutable_mesh_digest();
+  digest.set_size_bytes(digest.size_bytes() + 1);
+  EXPECT_EQ(Refusal(Cut(request)), "DIGEST_MISMATCH");
 }
 
 }  // namespace

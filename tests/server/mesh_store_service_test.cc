@@ -198,6 +198,23 @@ TEST_F(MeshStoreServiceTest, InspectReportsTheMeshAndTheCache) {
   EXPECT_FALSE(response.spectrum_cached());
 }
 
+// Merging takes the pairs that its pieces need, and not all must be there.
+TEST_F(MeshStoreServiceTest, InspectKnowsWhatSegmentKept) {
+  options_.cache_bytes = 0;
+  Start();
+  v1::SegmentRequest segment;
+  segment.mutable_mesh()->set_draco(StarPayload(3));
+  v1::InspectMeshRequest request;
+  *request.mutable_mesh() = segment.mesh();
+  v1::InspectMeshResponse response;
+  ASSERT_TRUE(Inspect(request, response).ok());
+  EXPECT_FALSE(response.spectrum_cached());
+  const Answer answer = Segment(segment);
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  ASSERT_TRUE(Inspect(request, response).ok());
+  EXPECT_TRUE(response.spectrum_cached());
+}
+
 TEST_F(MeshStoreServiceTest, InspectRefusesWhatSegmentRefuses) {
   Start();
   v1::InspectMeshRequest request;
