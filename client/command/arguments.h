@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "marrow/v1/segmentation_service.pb.h"
 
@@ -21,9 +22,10 @@ struct ServiceArguments {
   bool json = false;
   bool quiet = false;
 
-  absl::Duration Timeout() const {
-    return timeout.has_value() ? absl::Seconds(*timeout)
-                               : absl::InfiniteDuration();
+  // Of a file whose work begins now.
+  absl::Time Deadline() const {
+    return timeout.has_value() ? absl::Now() + absl::Seconds(*timeout)
+                               : absl::InfiniteFuture();
   }
 };
 

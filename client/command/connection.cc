@@ -1,8 +1,10 @@
 #include "client/command/connection.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "absl/time/clock.h"
 #include "core/base/status_macros.h"
 #include "server/server.h"
 
@@ -49,8 +51,10 @@ absl::StatusOr<std::unique_ptr<Connection>> Embed(int threads) {
 absl::StatusOr<std::unique_ptr<Connection>> Connect(
     const ConnectionOptions& options) {
   if (options.server.empty()) return Embed(options.threads);
+  const absl::Duration patience = std::clamp(options.deadline - absl::Now(),
+                                             absl::ZeroDuration(), kPatience);
   MARROW_ASSIGN_OR_RETURN(std::unique_ptr<Client> client,
-                          Client::Connect(options.server, kPatience));
+                          Client::Connect(options.server, patience));
   return std::make_unique<Remote>(std::move(client));
 }
 

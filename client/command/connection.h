@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "client/client.h"
 
 namespace marrow::client {
@@ -13,6 +14,7 @@ namespace marrow::client {
 struct ConnectionOptions {
   std::string server;  // empty: the service runs in this process
   int threads = 0;     // of the service in this process; 0: one a core
+  absl::Time deadline = absl::InfiniteFuture();
 };
 
 // Owns the client and, where there is one, the service in this process. Both
@@ -23,7 +25,8 @@ class Connection {
   virtual Client& client() = 0;
 };
 
-// Errors: UNAVAILABLE where the server does not answer within a few seconds.
+// Errors: UNAVAILABLE where the server does not answer within a few seconds, or
+// by the deadline.
 absl::StatusOr<std::unique_ptr<Connection>> Connect(
     const ConnectionOptions& options);
 

@@ -17,7 +17,7 @@ namespace {
 // The service in this process has nothing kept: it segments.
 absl::StatusOr<CutAnswer> SegmentAnew(const CutArguments& arguments,
                                       const Payload& payload,
-                                      ServiceCall& call) {
+                                      absl::Time deadline, ServiceCall& call) {
   if (!arguments.service.quiet) {
     absl::FPrintF(stderr,
                   "marrow: there is no --server that has kept the tree, so it "
@@ -28,21 +28,22 @@ absl::StatusOr<CutAnswer> SegmentAnew(const CutArguments& arguments,
   *request.mutable_cut() = ToMessage(arguments.cut);
   MARROW_ASSIGN_OR_RETURN(
       Segmentation answer,
-      call.client().Segment(payload, request, arguments.service.Timeout(),
+      call.client().Segment(payload, request, deadline - absl::Now(),
                             [](const v1::SegmentEvent&) {}));
   return CutAnswer{std::move(answer.cut).value(), std::move(answer.timings),
                    std::move(answer.cache)};
 }
 
 absl::StatusOr<CutAnswer> AskForCut(const CutArguments& arguments,
-                                    const Payload& payload, ServiceCall& call) {
+                                    const Payload& payload, absl::Time deadline,
+                                    ServiceCall& call) {
   if (arguments.service.server.empty()) {
-    return SegmentAnew(arguments, payload, call);
+    return SegmentAnew(arguments, payload, deadline, call);
   }
   v1::CutRequest request;
   *request.mutable_options() = arguments.method.ToMessage();
   *request.mutable_cut() = ToMessage(arguments.cut);
-  return call.client().Cut(payload, request, arguments.service.Timeout());
+  return call.client().Cut(payload, request, deadline - absl::Now());
 }
 
 void Tell(const CutArguments& arguments, const CutAnswer& answer,
@@ -69,18 +70,21 @@ void Tell(const CutArguments& arguments, const CutAnswer& answer,
 }
 
 absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
+  const absl::Time deadline = arguments.service.Deadline();
   MARROW_ASSIGN_OR_RETURN(
-      const Input input, LoadInput(arguments.file, arguments.service.quantize));
-  MARROW_RETURN_IF_ERROR(call.Connect());
+      const Input input,
+      LoadInput(arguments.file, arguments.service.quantize, deadline));
+  MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   MARROW_ASSIGN_OR_RETURN(CutAnswer answer,
-                          AskForCut(arguments, input.payload, call));
+                          AskForCut(arguments, input.payload, deadline, call));
   MARROW_RETURN_IF_ERROR(PutInFileOrder(input.order, answer.cut));
   const std::string name = arguments.file.substr(arguments.file.rfind('/') + 1);
-  MARROW_ASSIGN_OR_RETURN(
-      const std::vector<ResultFile> files,
-      MakeCutFiles(name, input.mesh, answer,
-                   {.parts = arguments.parts, .png = arguments.png},
-                   arguments.cut));
+  MARROW_ASSIGN_OR_RETURN(const std::vector<ResultFile> files,
+                          MakeCutFiles(name, input.mesh, answer,
+                                       {.parts = arguments.parts,
+                                        .png = arguments.png,
+                                        .deadline = deadline},
+                                       arguments.cut));
   if (call.interrupted()) return absl::CancelledError("interrupted");
   MARROW_RETURN_IF_ERROR(PrepareFolder(arguments.folder).status());
   MARROW_RETURN_IF_ERROR(

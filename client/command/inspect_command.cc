@@ -71,12 +71,14 @@ nlohmann::json ToJson(const std::string& file,
 }
 
 absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {
+  const absl::Time deadline = arguments.service.Deadline();
   MARROW_ASSIGN_OR_RETURN(
-      const Input input, LoadInput(arguments.file, arguments.service.quantize));
-  MARROW_RETURN_IF_ERROR(call.Connect());
+      const Input input,
+      LoadInput(arguments.file, arguments.service.quantize, deadline));
+  MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   MARROW_ASSIGN_OR_RETURN(
       const v1::InspectMeshResponse response,
-      call.client().Inspect(input.payload, arguments.service.Timeout()));
+      call.client().Inspect(input.payload, deadline - absl::Now()));
   if (arguments.service.json) {
     PrintJsonLine(ToJson(arguments.file, response));
   } else {

@@ -12,6 +12,7 @@
 #include "client/command/cut_text.h"
 #include "client/command/exit_code.h"
 #include "client/command/number_text.h"
+#include "client/encoder/encode.h"
 
 namespace marrow::client {
 namespace {
@@ -132,6 +133,16 @@ std::string CheckSeconds(const std::string& text) {
              : absl::StrCat("'", text, "' is no number of seconds above 0");
 }
 
+std::string CheckBits(const std::string& text) {
+  uint32_t bits = 0;
+  return ReadWholeNumber(text, bits) && bits >= 1 &&
+                 bits <= kMaxQuantizationBits
+             ? ""
+             : absl::StrCat("'", text, "' is no number of bits from 1 to ",
+                            kMaxQuantizationBits,
+                            "; without the option all are sent");
+}
+
 std::string CheckFolder(const std::string& text) {
   return text != "-" ? ""
                      : "results are several files, which standard output "
@@ -149,13 +160,14 @@ void AddServer(CLI::App& app, std::string& server, const char* otherwise) {
 void AddService(CLI::App& app, ServiceArguments& service) {
   AddServer(app, service.server, "the work is done in this process");
   app.add_option("--timeout", service.timeout,
-                 "Give a file up after this many seconds")
+                 "Give a file up after this many seconds, from reading it to "
+                 "its last picture")
       ->check(CheckSeconds)
       ->type_name("SECONDS");
   app.add_option("--quantize", service.quantize,
-                 "Send coordinates with this many bits, 1 to 30; without it "
-                 "exactly")
-      ->check(CLI::Range(1, 30))
+                 absl::StrCat("Send coordinates with this many bits, 1 to ",
+                              kMaxQuantizationBits, "; without it exactly"))
+      ->check(CheckBits)
       ->type_name("BITS");
   app.add_flag("--json", service.json, "Write JSON to standard output");
 }

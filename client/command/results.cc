@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "client/exporters/json_file.h"
 #include "client/exporters/obj_file.h"
 #include "client/exporters/ply_file.h"
@@ -16,12 +17,15 @@ namespace {
 
 // `name` is the files' without its last extension.
 absl::Status AddLevelFiles(const std::string& name, const PolygonMesh& mesh,
-                           const Level& level, bool png,
+                           const Level& level, const ResultOptions& options,
                            std::vector<ResultFile>& files) {
   files.push_back({name + ".seg", SegFile(level.face_labels)});
   MARROW_ASSIGN_OR_RETURN(std::string ply, PlyFile(mesh, level.face_labels));
   files.push_back({name + ".ply", std::move(ply)});
-  if (!png) return absl::OkStatus();
+  if (!options.png) return absl::OkStatus();
+  if (absl::Now() >= options.deadline) {
+    return absl::DeadlineExceededError("pictures are left to draw");
+  }
   MARROW_ASSIGN_OR_RETURN(std::string picture,
                           DrawPng(mesh, level.face_labels, level.skeleton));
   files.push_back({name + ".png", std::move(picture)});
@@ -91,12 +95,12 @@ absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
   files.push_back({stem + ".seg", SegFile(labels)});
   if (segmentation.cut.has_value()) {
     MARROW_RETURN_IF_ERROR(AddLevelFiles(
-        stem + ".cut", mesh, segmentation.cut->level, options.png, files));
+        stem + ".cut", mesh, segmentation.cut->level, options, files));
   }
   for (const Level& level : segmentation.levels) {
     MARROW_RETURN_IF_ERROR(
         AddLevelFiles(absl::StrCat(stem, ".level-", level.level), mesh, level,
-                      options.png, files));
+                      options, files));
   }
   if (options.parts) {
     MARROW_ASSIGN_OR_RETURN(std::string obj, PartsObjFile(mesh, labels));
@@ -114,7 +118,7 @@ absl::StatusOr<std::vector<ResultFile>> MakeCutFiles(
   const std::string stem = StemOf(name) + ".cut";
   std::vector<ResultFile> files;
   MARROW_RETURN_IF_ERROR(
-      AddLevelFiles(stem, mesh, answer.cut.level, options.png, files));
+      AddLevelFiles(stem, mesh, answer.cut.level, options, files));
   if (options.parts) {
     MARROW_ASSIGN_OR_RETURN(std::string obj,
                             PartsObjFile(mesh, answer.cut.level.face_labels));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "client/command/arguments.h"
 #include "client/command/result_folder.h"
 #include "client/encoder/order_map.h"
@@ -24,10 +25,13 @@ absl::Status PutInFileOrder(const OrderMap& order, Cut& cut);
 struct ResultOptions {
   bool parts = false;  // STEM.parts.obj
   bool png = false;    // STEM.cut.png, STEM.level-N.png
+  // Looked at before each picture, which takes a second or so.
+  absl::Time deadline = absl::InfiniteFuture();
 };
 
 // All files of one input, in memory. `name` is what the JSON calls the mesh,
-// and `cut` what was asked for.
+// and `cut` what was asked for. DEADLINE_EXCEEDED where a picture would come
+// too late.
 absl::StatusOr<std::vector<ResultFile>> MakeResultFiles(
     const std::string& name, const PolygonMesh& mesh,
     const Segmentation& segmentation, const ResultOptions& options,

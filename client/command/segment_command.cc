@@ -87,20 +87,23 @@ class SegmentRun {
 
   absl::Status SegmentFile(size_t file) {
     const absl::Time start = absl::Now();
+    const absl::Time deadline = arguments_.service.Deadline();
     const std::string& path = arguments_.files[file];
-    MARROW_ASSIGN_OR_RETURN(const Input input,
-                            LoadInput(path, arguments_.service.quantize));
+    MARROW_ASSIGN_OR_RETURN(
+        const Input input,
+        LoadInput(path, arguments_.service.quantize, deadline));
     MARROW_ASSIGN_OR_RETURN(
         Segmentation answer,
         call_.client().Segment(input.payload, ToRequest(arguments_),
-                               arguments_.service.Timeout(),
+                               deadline - absl::Now(),
                                [&](const v1::SegmentEvent& event) {
                                  reporter_.Event(file, event);
                                }));
     MARROW_ASSIGN_OR_RETURN(const Segmentation segmentation,
                             InFileOrder(std::move(answer), input.order));
-    MARROW_ASSIGN_OR_RETURN(const std::vector<ResultFile> files,
-                            ResultsOf(path, input.mesh, segmentation));
+    MARROW_ASSIGN_OR_RETURN(
+        const std::vector<ResultFile> files,
+        ResultsOf(path, input.mesh, segmentation, deadline));
     if (call_.interrupted()) return absl::CancelledError("interrupted");
     MARROW_RETURN_IF_ERROR(PublishResults(arguments_.folder, StemOf(path),
                                           files, {.inputs = arguments_.files}));
@@ -110,10 +113,12 @@ class SegmentRun {
 
   absl::StatusOr<std::vector<ResultFile>> ResultsOf(
       const std::string& path, const PolygonMesh& mesh,
-      const Segmentation& segmentation) const {
+      const Segmentation& segmentation, absl::Time deadline) const {
     const std::string name = path.substr(path.rfind('/') + 1);
     return MakeResultFiles(name, mesh, segmentation,
-                           {.parts = arguments_.parts, .png = arguments_.png},
+                           {.parts = arguments_.parts,
+                            .png = arguments_.png,
+                            .deadline = deadline},
                            arguments_.cut);
   }
 
@@ -150,7 +155,7 @@ int RunSegment(const SegmentArguments& arguments) {
   ServiceCall call(arguments.service);
   const absl::StatusOr<bool> is_new = PrepareFolder(arguments.folder);
   absl::Status status = is_new.status();
-  if (status.ok()) status = call.Connect();
+  if (status.ok()) status = call.Connect(arguments.service.Deadline());
   const int code = call.ExitCode(
       status.ok() ? SegmentRun(arguments, call).Run()
                   : TellFailure("", status, arguments.service.json));

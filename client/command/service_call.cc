@@ -24,11 +24,12 @@ ServiceCall::~ServiceCall() {
   if (interrupted()) connection_.release();
 }
 
-absl::Status ServiceCall::Connect() {
+absl::Status ServiceCall::Connect(absl::Time deadline) {
   MARROW_ASSIGN_OR_RETURN(
       connection_,
       client::Connect({.server = arguments_.server,
-                       .threads = static_cast<int>(arguments_.threads)}));
+                       .threads = static_cast<int>(arguments_.threads),
+                       .deadline = deadline}));
   absl::MutexLock lock(&mutex_);
   cancellable_ = &connection_->client();
   if (interrupted()) cancellable_->Cancel();
@@ -39,11 +40,13 @@ int ServiceCall::ExitCode(int otherwise) const {
   return interrupted() ? kExitSignal + interrupt_.signal() : otherwise;
 }
 
-absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize) {
+absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize,
+                                absl::Time deadline) {
   EncodeOptions options;
   options.quantization_bits = static_cast<int>(quantize);
-  MARROW_ASSIGN_OR_RETURN(MeshPayload loaded,
-                          LoadMeshPayload(path, options, MeshLimits()));
+  MARROW_ASSIGN_OR_RETURN(
+      MeshPayload loaded,
+      LoadMeshPayload(path, options, MeshLimits(), deadline));
   Input input;
   input.mesh = std::move(loaded.mesh);
   input.order = std::move(loaded.encoded.order);

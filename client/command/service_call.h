@@ -26,7 +26,7 @@ class ServiceCall {
   ~ServiceCall();
 
   // Call once, and before client().
-  absl::Status Connect();
+  absl::Status Connect(absl::Time deadline);
   Client& client() { return connection_->client(); }
 
   bool interrupted() const { return interrupt_.signal() != 0; }
@@ -47,7 +47,8 @@ struct Input {
   OrderMap order;
   Payload payload;
 };
-absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize);
+absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize,
+                                absl::Time deadline);
 
 // Tells a failure, as a line for a person or as JSON, and gives its exit code.
 int TellFailure(const std::string& file, const absl::Status& status, bool json);

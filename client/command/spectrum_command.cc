@@ -138,21 +138,23 @@ void WarnOfZeros(const SpectrumArguments& arguments, const Spectrum& spectrum) {
 
 absl::Status ComputeSpectrum(const SpectrumArguments& arguments,
                              ServiceCall& call) {
+  const absl::Time deadline = arguments.service.Deadline();
   MARROW_ASSIGN_OR_RETURN(
-      const Input input, LoadInput(arguments.file, arguments.service.quantize));
-  MARROW_RETURN_IF_ERROR(call.Connect());
+      const Input input,
+      LoadInput(arguments.file, arguments.service.quantize, deadline));
+  MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   v1::ComputeSpectrumRequest parameters;
   if (arguments.pairs) parameters.set_eigen_pairs(*arguments.pairs);
   parameters.set_include_eigenvectors(!arguments.output.empty());
   parameters.set_strict(arguments.strict);
   ProgressBar bar(!arguments.service.quiet);
-  MARROW_ASSIGN_OR_RETURN(
-      const Spectrum spectrum,
-      call.client().ComputeSpectrum(
-          input.payload, parameters, arguments.service.Timeout(),
-          [&](const v1::Progress& progress) {
-            bar.Show(progress.fraction(), StageName(progress.stage()));
-          }));
+  MARROW_ASSIGN_OR_RETURN(const Spectrum spectrum,
+                          call.client().ComputeSpectrum(
+                              input.payload, parameters, deadline - absl::Now(),
+                              [&](const v1::Progress& progress) {
+                                bar.Show(progress.fraction(),
+                                         StageName(progress.stage()));
+                              }));
   bar.Clear();
   if (!arguments.output.empty()) {
     MARROW_RETURN_IF_ERROR(

@@ -331,10 +331,11 @@ absl::Status CheckOptions(const EncodeOptions& options) {
     return absl::InvalidArgumentError(absl::StrCat(
         "the encoder's speed is ", options.speed, "; use 0 to 10"));
   }
-  if (options.quantization_bits < 0 || options.quantization_bits > 30) {
+  if (options.quantization_bits < 0 ||
+      options.quantization_bits > kMaxQuantizationBits) {
     return absl::InvalidArgumentError(absl::StrCat(
         "the number of quantization bits is ", options.quantization_bits,
-        "; use 1 to 30, or 0 for none"));
+        "; use 1 to ", kMaxQuantizationBits, ", or 0 for none"));
   }
   return absl::OkStatus();
 }

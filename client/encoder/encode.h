@@ -12,6 +12,10 @@ namespace marrow {
 
 enum class EncodeMethod { kAuto, kEdgebreaker, kSequential };
 
+// As many as a float has; each one more doubles Draco's tables, which take a
+// gigabyte from 28 on.
+inline constexpr int kMaxQuantizationBits = 24;
+
 struct EncodeOptions {
   // kAuto takes edgebreaker, which is smaller, where it keeps every face and
   // vertex and is quick, and sequential otherwise: where a triangle has two
@@ -19,9 +23,10 @@ struct EncodeOptions {
   // faces that edgebreaker takes quadratic time.
   EncodeMethod method = EncodeMethod::kAuto;
   int speed = 5;  // 0 (smallest) to 10 (quickest), both for encode and decode
-  // Bits a coordinate, 1 to 30; 0 sends the numbers as they are: floats, or
-  // doubles where there is a coordinate that is no float. A mesh with a
-  // coordinate that is not finite as a float is sent as it is in any case.
+  // Bits a coordinate, 1 to kMaxQuantizationBits; 0 sends the numbers as they
+  // are: floats, or doubles where there is a coordinate that is no float. A
+  // mesh with a coordinate that is not finite as a float is sent as it is in
+  // any case.
   int quantization_bits = 0;
   bool keep_attributes = false;  // send texture coordinates and normals too
 };

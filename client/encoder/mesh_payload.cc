@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "client/mesh_file/mesh_file.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
@@ -66,6 +67,12 @@ absl::Status CheckFinite(const PolygonMesh& mesh) {
   return absl::OkStatus();
 }
 
+absl::Status CheckTime(absl::Time deadline, const char* done) {
+  return absl::Now() < deadline
+             ? absl::OkStatus()
+             : absl::DeadlineExceededError(absl::StrCat(done, " too late"));
+}
+
 }  // namespace
 
 absl::StatusOr<MeshPayload> PayloadFromDraco(std::string bytes,
@@ -81,8 +88,9 @@ absl::StatusOr<MeshPayload> PayloadFromDraco(std::string bytes,
 
 absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
                                             const EncodeOptions& options,
-                                            const MeshLimits& limits) {
-  MARROW_ASSIGN_OR_RETURN(std::string bytes, ReadFileBytes(path));
+                                            const MeshLimits& limits,
+                                            absl::Time deadline) {
+  MARROW_ASSIGN_OR_RETURN(std::string bytes, ReadFileBytes(path, deadline));
   if (DetectMeshFormat(path, bytes) == MeshFormat::kDraco) {
     absl::StatusOr<MeshPayload> payload =
         PayloadFromDraco(std::move(bytes), limits);
@@ -90,6 +98,7 @@ absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
   }
   MeshPayload payload;
   MARROW_ASSIGN_OR_RETURN(payload.mesh, ParseMesh(path, bytes));
+  MARROW_RETURN_IF_ERROR(CheckTime(deadline, "it was read"));
   if (absl::Status s = CheckFinite(payload.mesh); !s.ok())
     return WithPath(path, s);
   absl::StatusOr<EncodedMesh> encoded = EncodeMesh(payload.mesh, options);
@@ -102,6 +111,7 @@ absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
                                                             : "two positions",
                      "; Marrow needs a surface"));
   }
+  MARROW_RETURN_IF_ERROR(CheckTime(deadline, "it was encoded"));
   payload.encoded = *std::move(encoded);
   return payload;
 }

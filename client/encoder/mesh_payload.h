@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "client/encoder/encode.h"
 #include "client/polygon_mesh.h"
 #include "core/mesh/decode.h"
@@ -23,10 +24,11 @@ absl::StatusOr<MeshPayload> PayloadFromDraco(std::string bytes,
 
 // Reads any mesh file and encodes it; one that holds Draco bytes is taken as it
 // is. Errors are those of ReadMeshFile, EncodeMesh and PayloadFromDraco, and
-// begin with the path.
-absl::StatusOr<MeshPayload> LoadMeshPayload(const std::string& path,
-                                            const EncodeOptions& options,
-                                            const MeshLimits& limits);
+// begin with the path; and DEADLINE_EXCEEDED, which is noticed while reading,
+// and after parsing and encoding.
+absl::StatusOr<MeshPayload> LoadMeshPayload(
+    const std::string& path, const EncodeOptions& options,
+    const MeshLimits& limits, absl::Time deadline = absl::InfiniteFuture());
 
 }  // namespace marrow
 

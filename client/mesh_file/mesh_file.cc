@@ -1,18 +1,23 @@
 #include "client/mesh_file/mesh_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "client/mesh_file/readers.h"
 #include "client/mesh_file/text_scanner.h"
 #include "core/base/status_macros.h"
@@ -20,8 +25,9 @@
 namespace marrow {
 namespace {
 
-// Bounds what an endless file, such as a device, can fill.
-constexpr size_t kMaxFileBytes = size_t{4} << 30;
+constexpr uint64_t kMaxFileBytes = uint64_t{4} << 30;
+// Of what does not tell its size, such as a pipe or an endless device.
+constexpr uint64_t kMaxStreamBytes = uint64_t{1} << 30;
 
 absl::Status ReadError(const std::string& path, int error) {
   const std::string what =
@@ -42,28 +48,83 @@ absl::Status ReadError(const std::string& path, int error) {
   }
 }
 
-absl::StatusOr<std::string> ReadAll(const std::string& path, int fd) {
-  std::string bytes;
-  struct stat info;
-  if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0 &&
-      static_cast<uint64_t>(info.st_size) <= kMaxFileBytes) {
-    bytes.reserve(static_cast<size_t>(info.st_size) + 1);
-  }
-  constexpr size_t kChunkBytes = size_t{1} << 20;
-  while (true) {
-    const size_t size = bytes.size();
-    bytes.resize(std::max(size + kChunkBytes, bytes.capacity()));
-    const ssize_t got = read(fd, bytes.data() + size, bytes.size() - size);
-    const int error = errno;
-    bytes.resize(size + (got > 0 ? static_cast<size_t>(got) : 0));
-    if (got < 0 && error != EINTR) return ReadError(path, error);
-    if (got == 0) return bytes;
-    if (bytes.size() > kMaxFileBytes) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat(path, ": is larger than 4 GiB"));
-    }
-  }
+absl::Status TooLarge(const std::string& path, uint64_t limit) {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      path, ": is larger than ", limit >> 30, " GiB; simplify the mesh"));
 }
+
+// A file that is read from beginning to end, until a deadline.
+class Reading {
+ public:
+  Reading(const std::string& path, int fd, absl::Time deadline)
+      : path_(path), fd_(fd), deadline_(deadline) {}
+
+  absl::StatusOr<std::string> All() {
+    struct stat info;
+    if (fstat(fd_, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size <= 0) {
+      return Stream();
+    }
+    const auto size = static_cast<uint64_t>(info.st_size);
+    if (size > kMaxFileBytes) return TooLarge(path_, kMaxFileBytes);
+    return Block(size);
+  }
+
+ private:
+  // Blocks to the end of what has no size. One string that grew would be there
+  // twice each time it did.
+  absl::StatusOr<std::string> Stream() {
+    constexpr size_t kBlockBytes = size_t{4} << 20;
+    std::deque<std::string> blocks;
+    uint64_t size = 0;
+    do {
+      MARROW_ASSIGN_OR_RETURN(blocks.emplace_back(), Block(kBlockBytes));
+      size += blocks.back().size();
+      if (size > kMaxStreamBytes) return TooLarge(path_, kMaxStreamBytes);
+    } while (blocks.back().size() == kBlockBytes);
+    std::string bytes;
+    bytes.reserve(size);
+    for (; !blocks.empty(); blocks.pop_front()) bytes += blocks.front();
+    return bytes;
+  }
+
+  // `size` bytes, fewer at the end of the file.
+  absl::StatusOr<std::string> Block(size_t size) {
+    std::string bytes(size, '\0');
+    size_t filled = 0;
+    while (filled < size) {
+      MARROW_RETURN_IF_ERROR(WaitForBytes());
+      const ssize_t got = read(fd_, bytes.data() + filled, size - filled);
+      if (got == 0) break;
+      if (got < 0 && errno != EINTR && errno != EAGAIN) {
+        return ReadError(path_, errno);
+      }
+      filled += got > 0 ? static_cast<size_t>(got) : 0;
+    }
+    bytes.resize(filled);
+    return bytes;
+  }
+
+  // Nobody may ever write into a pipe.
+  absl::Status WaitForBytes() const {
+    pollfd ready{fd_, POLLIN, 0};
+    int found = 0;
+    do {
+      const absl::Duration left = deadline_ - absl::Now();
+      const int64_t most = std::numeric_limits<int>::max();
+      found = poll(&ready, 1,
+                   left == absl::InfiniteDuration()
+                       ? -1
+                       : static_cast<int>(std::clamp<int64_t>(
+                             absl::ToInt64Milliseconds(left), 0, most)));
+    } while (found < 0 && errno == EINTR);
+    if (found != 0) return absl::OkStatus();
+    return absl::DeadlineExceededError("it is still being read");
+  }
+
+  const std::string& path_;
+  const int fd_;
+  const absl::Time deadline_;
+};
 
 MeshFormat FormatOfExtension(const std::string& path) {
   const std::string extension =
@@ -134,11 +195,14 @@ MeshFormat DetectMeshFormat(const std::string& path, std::string_view bytes) {
   return format != MeshFormat::kUnknown ? format : FormatOfContent(path, bytes);
 }
 
-absl::StatusOr<std::string> ReadFileBytes(const std::string& path) {
-  const int fd = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                             : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+absl::StatusOr<std::string> ReadFileBytes(const std::string& path,
+                                          absl::Time deadline) {
+  // To open a pipe into which nobody writes would take for ever.
+  const int fd = path == "-"
+                     ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                     : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return ReadError(path, errno);
-  absl::StatusOr<std::string> bytes = ReadAll(path, fd);
+  absl::StatusOr<std::string> bytes = Reading(path, fd, deadline).All();
   close(fd);
   if (bytes.ok() && bytes->empty()) {
     return absl::InvalidArgumentError(

@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "client/polygon_mesh.h"
 
 namespace marrow {
@@ -19,8 +20,10 @@ MeshFormat DetectMeshFormat(const std::string& path, std::string_view bytes);
 
 // The whole file; of "-", standard input to its end. Errors name the path:
 // NOT_FOUND, PERMISSION_DENIED, INVALID_ARGUMENT (a folder, an empty file),
-// RESOURCE_EXHAUSTED (over 4 GiB).
-absl::StatusOr<std::string> ReadFileBytes(const std::string& path);
+// RESOURCE_EXHAUSTED (over 4 GiB; over 1 GiB of what is no regular file);
+// DEADLINE_EXCEEDED does not.
+absl::StatusOr<std::string> ReadFileBytes(
+    const std::string& path, absl::Time deadline = absl::InfiniteFuture());
 
 // Reads an OFF, OBJ, PLY, STL, glTF or GLB file.
 //

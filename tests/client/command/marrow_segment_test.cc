@@ -264,7 +264,7 @@ TEST_F(MarrowSegmentTest, ImpossibleParametersNameTheOptionAndLeaveNothing) {
       {"--kappa", "-1"},       {"--kappa", "nan"},   {"--pairs", "0"},
       {"--pairs", "1001"},     {"--delta", "1"},     {"--epsilon", "2"},
       {"--tolerance", "9"},    {"--levels", "0"},    {"--levels", "9"},
-      {"--pairs", "x"},        {"--timeout", "0"},   {"--quantize", "31"},
+      {"--pairs", "x"},        {"--timeout", "0"},   {"--quantize", "25"},
       {"--method", "guess"},   {"--cut", "level:4"}, {"--cut", "segments:0"},
       {"--cut", "salience:2"}, {"--cut", "half"},    {"--open", "x"},
       {"--closed", "x"}};
@@ -464,6 +464,17 @@ TEST_F(MarrowSegmentTest, ATimeoutEndsTheCallAndLeavesNothing) {
   const Finished run = Segment({Sample(), "--timeout", "0.001"});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("--timeout"));
+  EXPECT_FALSE(std::filesystem::exists(Out()));
+}
+
+TEST_F(MarrowSegmentTest, ATimeoutEndsAReadThatNeverReturns) {
+  const std::string pipe = folder_ / "pipe.off";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const Finished run =
+      RunProgram({"/usr/bin/timeout", "30", ProgramPath("marrow"), "segment",
+                  pipe, "-o", Out(), "--timeout", "0.3"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("pipe.off: not done in time"));
   EXPECT_FALSE(std::filesystem::exists(Out()));
 }
 

@@ -83,7 +83,8 @@ TEST(MarrowTest, ValuesThatAreNoneAreNamed) {
       {"--closed", "3,x", "--closed: 'x' is no whole number"},
       {"--timeout", "nan", "--timeout: 'nan' is no number of seconds"},
       {"--timeout", "0", "--timeout: '0' is no number of seconds"},
-      {"--quantize", "31", "--quantize"}};
+      {"--quantize", "25",
+       "--quantize: '25' is no number of bits from 1 to 24"}};
   for (const auto& [option, value, complaint] : cases) {
     const Finished run = Marrow({"segment", "x.off", option, value});
     EXPECT_EQ(run.code, 2);
@@ -294,6 +295,22 @@ TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
   EXPECT_EQ(health.code, 3);
   EXPECT_THAT(health.err, HasSubstr("127.0.0.1:1: nothing answers"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST(MarrowTest, ATimeoutBoundsTheWaitForAServer) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "t.off", kTetrahedron);
+  const auto start = std::chrono::steady_clock::now();
+  const Finished run = Marrow({"inspect", folder / "t.off", "--server",
+                               "127.0.0.1:1", "--timeout", "0.5"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));
+}
+
+TEST(MarrowTest, AnEndlessFileIsRefused) {
+  const Finished run = Marrow({"inspect", "/dev/zero"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("/dev/zero: is larger than 1 GiB"));
 }
 
 TEST(MarrowTest, AFullDiskIsNoSuccess) {

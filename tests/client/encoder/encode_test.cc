@@ -430,8 +430,9 @@ TEST(EncodeMeshTest, ErrorsSayWhatToDo) {
   EXPECT_THAT(message(PolygonMesh(), {}), HasSubstr("no face"));
   EXPECT_THAT(message(edges, {}), HasSubstr("three corners"));
   EXPECT_THAT(message(Torus(false), {.speed = 11}), HasSubstr("0 to 10"));
-  EXPECT_THAT(message(Torus(false), {.quantization_bits = 31}),
-              HasSubstr("1 to 30"));
+  EXPECT_THAT(
+      message(Torus(false), {.quantization_bits = kMaxQuantizationBits + 1}),
+      HasSubstr("1 to 24"));
   PolygonMesh point;
   point.positions.resize(1);
   point.AddFace(Corners3{0, 0, 0});
