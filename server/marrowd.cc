@@ -1,7 +1,9 @@
 // The server program: flags, log and signals around server/server.h.
+#include <fcntl.h>
 #include <grpc/support/log.h>
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -76,21 +78,30 @@ std::string CheckFinite(const std::string& text) {
              : "'" + text + "' is no number";
 }
 
-// What CLI11 made of a size; it lets -1 wrap around.
-std::string CheckSize(const std::string& text) {
+// Makes a number of bytes of a size, and an error where that cannot be.
+std::string ReadSize(std::string& text) {
   constexpr uint64_t kMost = uint64_t{1} << 50;
+  const std::string given = text;
   uint64_t value = 0;
-  return absl::SimpleAtoi(text, &value) && value <= kMost
-             ? ""
-             : "must be 0 to 1 PiB";
+  try {
+    const CLI::AsSizeValue bytes(false);
+    // CLI11 lets -1 wrap around.
+    if (bytes(text).empty() && absl::SimpleAtoi(text, &value) &&
+        value <= kMost) {
+      return "";
+    }
+  } catch (const CLI::ValidationError&) {
+  }
+  return "'" + given +
+         "' is no size; write a whole number of bytes up to 1 PiB, or with a "
+         "unit, such as 64MiB";
 }
 
 void AddLimits(CLI::App& app, ServerOptions& options) {
-  const auto bytes = CLI::AsSizeValue(false);
+  const CLI::Validator bytes(&ReadSize, "");
   app.add_option("--max-mesh-bytes", options.mesh_limits.max_bytes,
                  "Largest mesh that is taken, such as 64MiB")
       ->transform(bytes)
-      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--max-faces", options.mesh_limits.max_faces,
                  "Most faces of a mesh")
@@ -104,18 +115,15 @@ void AddLimits(CLI::App& app, ServerOptions& options) {
                  "Memory for eigen-pairs of earlier calls, such as 1GiB; 0 "
                  "keeps none")
       ->transform(bytes)
-      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--result-cache-bytes", options.result_cache_bytes,
                  "Memory for results of earlier calls, whose trees Cut cuts "
                  "again; 0 keeps none")
       ->transform(bytes)
-      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--mesh-store-bytes", options.mesh_store_bytes,
                  "Memory for uploaded meshes; at least --max-mesh-bytes")
       ->transform(bytes)
-      ->check(CheckSize)
       ->capture_default_str();
   app.add_option("--threads", options.compute_threads,
                  "Threads that compute, a call each; 0: one a core")
@@ -153,6 +161,14 @@ void AddFlags(CLI::App& app, Flags& flags) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("marrowd: ") + error.what() + "; see marrowd --help\n";
   });
+}
+
+// A socket in the place of a closed standard stream would receive what is
+// printed.
+void OpenStandardStreams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(fd, F_GETFD) < 0) open("/dev/null", O_RDWR);
+  }
 }
 
 sigset_t StopSignals() {
@@ -233,6 +249,7 @@ int Serve(const Flags& flags, std::future<int> stop_signal, JsonLog& log) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  OpenStandardStreams();
   std::future<int> stop_signal = TakeStopSignals();
   signal(SIGPIPE, SIG_IGN);
 

@@ -123,7 +123,7 @@ class ServerImpl final : public Server {
     if (server_ == nullptr || (!address.empty() && port_ <= 0)) {
       return absl::UnavailableError(absl::StrCat(
           "cannot listen on ", address,
-          ": the port is taken, or the address is not this machine's"));
+          ": the port is taken, or the host is unknown or not this machine"));
     }
     SetServing(true);
     return absl::OkStatus();

@@ -1,5 +1,9 @@
 #include "core/pipeline/options.h"
 
+#include <array>
+#include <charconv>
+#include <string>
+
 #include "absl/strings/str_cat.h"
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
@@ -12,12 +16,22 @@ constexpr ParameterRange kRanges[] = {
     {"tolerance", 0, 0.5}, {"eigen_pairs", 2, 1000}, {"levels", 1, 8},
 };
 
+// The fewest digits that read back as the same number, so that no value looks
+// like the bound that it misses.
+std::string Shortest(double value) {
+  std::array<char, 32> digits;
+  char* end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return std::string(digits.data(), end);
+}
+
 absl::Status CheckRange(const std::string& field, double value,
                         const ParameterRange& range) {
   // Written so that NaN fails.
   if (value >= range.min && value <= range.max) return absl::OkStatus();
-  return InvalidField(field, absl::StrCat("is ", value, ", must be from ",
-                                          range.min, " to ", range.max));
+  return InvalidField(
+      field, absl::StrCat("is ", Shortest(value), ", must be from ",
+                          Shortest(range.min), " to ", Shortest(range.max)));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -35,7 +36,7 @@ void FillPipe(int fd) {
   fcntl(fd, F_SETFL, 0);
 }
 
-enum class LogPipe { kEmpty, kFull };
+enum class LogPipe { kEmpty, kFull, kClosed };
 
 // marrowd with its output in pipes.
 class Daemon {
@@ -51,6 +52,9 @@ class Daemon {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
+    if (log == LogPipe::kClosed) {
+      posix_spawn_file_actions_addclose(&actions, STDERR_FILENO);
+    }
     arguments.insert(arguments.begin(), MARROWD_PATH);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -74,6 +78,13 @@ class Daemon {
   }
 
   void Signal(int signal) { kill(pid_, signal); }
+
+  // What stands behind a descriptor of its.
+  std::string NameOf(int fd) const {
+    return std::filesystem::read_symlink("/proc/" + std::to_string(pid_) +
+                                         "/fd/" + std::to_string(fd))
+        .string();
+  }
 
   // Whether it ends by itself, within half a minute.
   bool Ends() const {
@@ -229,6 +240,27 @@ TEST(MarrowdTest, ATakenPortIsSaid) {
   EXPECT_EQ(second.Errors().rfind("marrowd: cannot listen on " + address, 0),
             0u)
       << second.Errors();
+}
+
+TEST(MarrowdTest, NothingElseTakesThePlaceOfAClosedStream) {
+  Daemon daemon({"--port", "0"}, LogPipe::kClosed);
+  EXPECT_NE(daemon.Address(), "");
+  EXPECT_EQ(daemon.NameOf(STDERR_FILENO), "/dev/null");
+}
+
+TEST(MarrowdTest, SizesThatAreNoneAreToldHowToWrite) {
+  for (const std::string size : {"1e6", "1.5MiB", "many", "-4", ""}) {
+    Daemon daemon({"--max-mesh-bytes", size});
+    EXPECT_EQ(daemon.Wait(), 1);
+    EXPECT_THAT(daemon.Errors(), HasSubstr("--max-mesh-bytes: '" + size +
+                                           "' is no size; write"));
+  }
+}
+
+TEST(MarrowdTest, AHostThatIsUnknownIsSaid) {
+  Daemon daemon({"--listen", "no-such-host.invalid:0"});
+  EXPECT_EQ(daemon.Wait(), 2);
+  EXPECT_THAT(daemon.Errors(), HasSubstr("the host is unknown"));
 }
 
 TEST(MarrowdTest, WrongFlagsAreSaid) {

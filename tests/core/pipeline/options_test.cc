@@ -126,6 +126,8 @@ TEST(OptionsTest, RefusesCutsThatAreOutOfRangeAndSaysWhatIsNot) {
   for (double salience : {-0.1, 1.1, nan})
     EXPECT_THAT(CutErrorOf(CutSpec::AtSalience(salience), Method::kMerge),
                 HasSubstr("must be from 0 to 1"));
+  EXPECT_THAT(CutErrorOf(CutSpec::AtSalience(1.0000001), Method::kMerge),
+              HasSubstr("is 1.0000001, must be from 0 to 1"));
   EXPECT_THAT(CutErrorOf(CutSpec::AtSalience(0.5), Method::kPaper),
               HasSubstr("choose the method merge"));
 }
