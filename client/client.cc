@@ -1,6 +1,5 @@
 #include "client/client.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +15,9 @@
 namespace marrow::client {
 namespace {
 
+// What servers take inline, unless they say less. To ask them first would be a
+// round trip more for every command.
+constexpr size_t kMaxInlineBytes = 1 << 20;
 constexpr size_t kUploadChunk = 256 << 10;
 // A mesh that was just uploaded may be evicted by others' uploads before it is
 // named; more than twice means that the store is too small for it.
@@ -186,11 +188,11 @@ absl::Status Client::CheckHealth(absl::Duration timeout) {
 
 absl::Status Client::WithMesh(const Payload& payload, absl::Time deadline,
                               const Attempt& attempt) {
-  MARROW_ASSIGN_OR_RETURN(const uint64_t limit, InlineLimit(deadline));
   v1::MeshSource source;
-  if (payload.draco.size() <= limit) {
+  if (payload.draco.size() <= kMaxInlineBytes) {
     source.set_draco(payload.draco);
-    return attempt(source, deadline);
+    absl::Status status = attempt(source, deadline);
+    if (FieldOf(status) != "mesh.draco") return status;
   }
   *source.mutable_digest() = DigestOf(payload.draco);
   absl::Status status = attempt(source, deadline);
@@ -222,19 +224,6 @@ absl::Status Client::Upload(const Payload& payload,
   }
   writer->WritesDone();
   return FromRpcStatus(writer->Finish());
-}
-
-absl::StatusOr<uint64_t> Client::InlineLimit(absl::Time deadline) {
-  {
-    absl::MutexLock lock(&mutex_);
-    if (inline_limit_ > 0) return inline_limit_;
-  }
-  MARROW_ASSIGN_OR_RETURN(const v1::GetCapabilitiesResponse response,
-                          GetCapabilities(deadline - absl::Now()));
-  const uint64_t limit = response.mesh_limits().max_inline_mesh_bytes();
-  absl::MutexLock lock(&mutex_);
-  inline_limit_ = std::max<uint64_t>(limit, 1);
-  return inline_limit_;
 }
 
 }  // namespace marrow::client

@@ -10,10 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "absl/base/thread_annotations.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "client/call_group.h"
 #include "client/payload.h"
@@ -51,8 +49,9 @@ using SegmentObserver = std::function<void(const v1::SegmentEvent&)>;
 // that does not answer at all gives UNAVAILABLE without a reason, an answer
 // that contradicts itself DATA_LOSS.
 //
-// Meshes above the server's inline limit are named by digest first and
-// uploaded only where the server lacks them.
+// A call is one round trip where the mesh is small enough to go inline, or the
+// server has it: larger ones are named by digest first, and uploaded only where
+// the server lacks them.
 class Client {
  public:
   // Connects, or fails with UNAVAILABLE within `patience`. The address is
@@ -103,7 +102,6 @@ class Client {
                         const Attempt& attempt);
   absl::Status Upload(const Payload& payload, const v1::MeshDigest& digest,
                       absl::Time deadline);
-  absl::StatusOr<uint64_t> InlineLimit(absl::Time deadline);
 
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::SegmentationService::Stub> segmentation_;
@@ -111,8 +109,6 @@ class Client {
   std::unique_ptr<v1::SpectrumService::Stub> spectrum_;
   std::unique_ptr<v1::CapabilitiesService::Stub> capabilities_;
   CallGroup calls_;
-  absl::Mutex mutex_;
-  uint64_t inline_limit_ ABSL_GUARDED_BY(mutex_) = 0;  // 0: not asked yet
 };
 
 }  // namespace marrow::client

@@ -15,6 +15,7 @@ namespace marrow {
 namespace {
 
 using nlohmann::json;
+using ::testing::ElementsAre;
 using testing::Finished;
 using ::testing::HasSubstr;
 using testing::ListFolder;
@@ -39,9 +40,10 @@ class MarrowServerTest : public ::testing::Test {
     delete folder_;
   }
 
-  static std::unique_ptr<Subprocess> StartDaemon() {
+  static std::unique_ptr<Subprocess> StartDaemon(
+      const std::string& log_level = "off") {
     return std::make_unique<Subprocess>(std::vector<std::string>{
-        ProgramPath("marrowd"), "--port", "0", "--log-level", "off"});
+        ProgramPath("marrowd"), "--port", "0", "--log-level", log_level});
   }
   static std::string AddressOf(Subprocess& daemon) {
     const std::string words = "listening on ";
@@ -154,6 +156,27 @@ TEST_F(MarrowServerTest, TheSecondCallNeedsNoSolver) {
   EXPECT_EQ(result["cache"]["outcome"], "hit");
   EXPECT_EQ(result["cache"]["solver_runs"], 0);
   EXPECT_EQ(ReadFile(File("twice/h.seg")), labels);
+}
+
+TEST_F(MarrowServerTest, ACommandIsOneCall) {
+  const std::unique_ptr<Subprocess> daemon = StartDaemon("info");
+  for (const char* command : {"segment", "segment", "cut"}) {
+    const Finished run =
+        RunProgram({ProgramPath("marrow"), command, File("h.off"), "-o",
+                    File("one"), "--server", AddressOf(*daemon)});
+    ASSERT_EQ(run.code, 0) << run.err;
+  }
+  daemon->Signal(SIGTERM);
+  EXPECT_EQ(daemon->Wait(), 0);
+  std::vector<std::string> methods;
+  std::istringstream lines(daemon->Err());
+  for (std::string line; std::getline(lines, line);) {
+    const json record = json::parse(line);
+    if (record["message"] == "call") methods.push_back(record["method"]);
+  }
+  EXPECT_THAT(methods, ElementsAre("SegmentationService.Segment",
+                                   "SegmentationService.Segment",
+                                   "SegmentationService.Cut"));
 }
 
 TEST_F(MarrowServerTest, AServerThatIsLostEndsTheRunWithItsOwnExitCode) {
