@@ -13,11 +13,14 @@
 
 namespace marrow::client {
 
+// A file in flight is held in memory as mesh, payload and answer.
+inline constexpr uint32_t kMaxFilesAtOnce = 16;
+
 // What all commands that call a server share.
 struct ServiceArguments {
   std::string server;             // empty: compute in this process
   std::optional<double> timeout;  // seconds a file
-  uint32_t threads = 0;           // 0: one a core
+  uint32_t threads = 0;           // at most kMaxFilesAtOnce; 0: one a core
   uint32_t quantize = 0;          // bits a coordinate; 0: lossless
   bool json = false;
   bool quiet = false;

@@ -86,10 +86,15 @@ absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
                                         .deadline = deadline},
                                        arguments.cut));
   if (call.interrupted()) return absl::CancelledError("interrupted");
-  MARROW_RETURN_IF_ERROR(PrepareFolder(arguments.folder).status());
-  MARROW_RETURN_IF_ERROR(
+  MARROW_ASSIGN_OR_RETURN(const std::vector<std::string> made,
+                          PrepareFolder(arguments.folder));
+  const absl::Status published =
       PublishResults(arguments.folder, StemOf(name), files,
-                     {.scope = ResultScope::kCut, .inputs = {arguments.file}}));
+                     {.scope = ResultScope::kCut, .inputs = {arguments.file}});
+  if (!published.ok()) {
+    RemoveFolders(made);
+    return published;
+  }
   Tell(arguments, answer, files);
   return absl::OkStatus();
 }

@@ -91,6 +91,12 @@ void AddImplied(const json& record, const std::string& stem,
   }
 }
 
+// As JSON has it: bytes that are not UTF-8 are replaced.
+std::string AsText(const std::string& bytes) {
+  return json::parse(
+      json(bytes).dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
 void AddRecorded(const fs::path& folder, const std::string& stem,
                  const std::string& record_name, std::set<std::string>& names) {
   const json record = ReadRecord(folder / record_name);
@@ -99,8 +105,13 @@ void AddRecorded(const fs::path& folder, const std::string& stem,
     ImpliedNames implied(folder, names);
     return AddImplied(record, stem, implied);
   }
+  const std::string text = AsText(stem);
   for (const json& name : record["files"]) {
-    if (name.is_string()) names.insert(name.get<std::string>());
+    if (!name.is_string()) continue;
+    const std::string listed = name.get<std::string>();
+    if (listed.starts_with(text)) {
+      names.insert(stem + listed.substr(text.size()));
+    }
   }
 }
 

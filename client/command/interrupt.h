@@ -9,12 +9,13 @@
 namespace marrow::client {
 
 // While it lives, the first SIGINT, SIGTERM or SIGHUP calls `on_signal` on a
-// thread of its own. A second one, or two seconds more, end the process at
-// once. Make it before any other thread, and one at a time: it blocks the
-// signals in the calling thread, whose children inherit that.
+// thread of its own. A second one, or two seconds more, call `before_exit`,
+// which must not take long, and end the process. A signal that was ignored
+// before stays so. Make it before any other thread, and one at a time: it
+// blocks the signals in the calling thread, whose children inherit that.
 class Interrupt {
  public:
-  explicit Interrupt(std::function<void()> on_signal);
+  Interrupt(std::function<void()> on_signal, std::function<void()> before_exit);
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
@@ -25,7 +26,8 @@ class Interrupt {
  private:
   void Watch();
 
-  std::function<void()> on_signal_;
+  const std::function<void()> on_signal_;
+  const std::function<void()> before_exit_;
   std::atomic<int> signal_ = 0;
   std::atomic<bool> stopping_ = false;
   std::thread watcher_;

@@ -1,9 +1,6 @@
 #include "client/command/result_folder.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -16,6 +13,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/atomic_file.h"
 #include "client/command/earlier_results.h"
+#include "client/command/staging_folder.h"
 #include "core/base/status_macros.h"
 
 namespace marrow::client {
@@ -44,38 +42,6 @@ std::string OwnerOf(const std::string& stem) {
              ? path.stem().string()
              : "";
 }
-
-// A hidden folder inside `parent`, removed with all that is in it.
-class StagingFolder {
- public:
-  static absl::StatusOr<StagingFolder> Make(const std::string& parent) {
-    std::string path = (fs::path(parent) / ".marrow-XXXXXX").string();
-    if (mkdtemp(path.data()) == nullptr) {
-      const absl::StatusCode code = errno == ENOSPC
-                                        ? absl::StatusCode::kResourceExhausted
-                                        : absl::StatusCode::kPermissionDenied;
-      return absl::Status(
-          code,
-          absl::StrCat(parent, ": cannot write there: ", std::strerror(errno),
-                       "; choose another folder with -o"));
-    }
-    return StagingFolder(path);
-  }
-  StagingFolder(StagingFolder&& other)
-      : path_(std::exchange(other.path_, fs::path())) {}
-  StagingFolder& operator=(StagingFolder&&) = delete;
-  ~StagingFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-
-  const fs::path& path() const { return path_; }
-
- private:
-  explicit StagingFolder(fs::path path) : path_(std::move(path)) {}
-
-  fs::path path_;
-};
 
 // Renames that can be taken back.
 class Renames {
@@ -188,17 +154,32 @@ absl::Status CheckStems(const std::vector<std::string>& inputs) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<bool> PrepareFolder(const std::string& folder) {
+absl::StatusOr<std::vector<std::string>> PrepareFolder(
+    const std::string& folder) {
+  std::vector<std::string> made;
   std::error_code error;
-  const bool is_new = fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(folder, ": cannot be made or is no folder: ",
-                     error ? error.message() : "a file has this name",
-                     "; choose another one with -o"));
+  fs::path path(folder);
+  if (!path.has_filename()) path = path.parent_path();  // it ends in a slash
+  for (; path.has_relative_path(); path = path.parent_path()) {
+    if (!fs::exists(path, error)) made.push_back(path.string());
   }
-  MARROW_RETURN_IF_ERROR(StagingFolder::Make(folder).status());
-  return is_new;
+  error.clear();
+  fs::create_directories(folder, error);
+  const bool is_folder = !error && fs::is_directory(folder, error);
+  absl::Status status =
+      is_folder ? StagingFolder::Make(folder).status()
+                : absl::PermissionDeniedError(absl::StrCat(
+                      folder, ": cannot be made or is no folder: ",
+                      error ? error.message() : "a file has this name",
+                      "; choose another one with -o"));
+  if (status.ok()) return made;
+  RemoveFolders(made);
+  return status;
+}
+
+void RemoveFolders(const std::vector<std::string>& folders) {
+  std::error_code ignored;
+  for (const std::string& folder : folders) fs::remove(folder, ignored);
 }
 
 bool IsResultName(const std::string& stem, const std::string& name,
@@ -223,6 +204,7 @@ absl::Status PublishResults(const std::string& folder, const std::string& stem,
                           StagingFolder::Make(folder));
   MARROW_RETURN_IF_ERROR(WriteAll(staging.path(), folder, files));
   MARROW_ASSIGN_OR_RETURN(const StagingFolder old, StagingFolder::Make(folder));
+  const FilesMove files_move;
   Renames renames;
   for (const std::string& name : replaced) {
     const fs::path path = fs::path(folder) / name;

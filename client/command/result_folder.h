@@ -18,9 +18,14 @@ std::string StemOf(const std::string& path);
 // or one's STEM is a result's of the other, such as a and a.level-1.
 absl::Status CheckStems(const std::vector<std::string>& inputs);
 
-// Makes the folder where it is missing, and checks that files can be made in
-// it. The value is whether it was missing. Errors name it and say what to do.
-absl::StatusOr<bool> PrepareFolder(const std::string& folder);
+// Makes the folder, and those above it, where they are missing, and checks that
+// files can be made in it. The value are those that it made, the deepest first;
+// none after an error. Errors name the folder and say what to do.
+absl::StatusOr<std::vector<std::string>> PrepareFolder(
+    const std::string& folder);
+
+// Those of them that are empty.
+void RemoveFolders(const std::vector<std::string>& folders);
 
 struct ResultFile {
   std::string name;  // without folder

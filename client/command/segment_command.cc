@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <filesystem>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -20,9 +18,6 @@
 
 namespace marrow::client {
 namespace {
-
-// A file in flight is held in memory as mesh, payload and answer.
-constexpr uint32_t kMaxInFlight = 16;
 
 v1::SegmentRequest ToRequest(const SegmentArguments& arguments) {
   v1::SegmentRequest request;
@@ -65,7 +60,7 @@ class SegmentRun {
     const uint32_t wanted = arguments_.service.threads > 0
                                 ? arguments_.service.threads
                                 : std::thread::hardware_concurrency();
-    return std::min<size_t>(std::clamp(wanted, 1u, kMaxInFlight),
+    return std::min<size_t>(std::clamp(wanted, 1u, kMaxFilesAtOnce),
                             arguments_.files.size());
   }
 
@@ -153,17 +148,13 @@ int RunSegment(const SegmentArguments& arguments) {
     return kExitUsage;
   }
   ServiceCall call(arguments.service);
-  const absl::StatusOr<bool> is_new = PrepareFolder(arguments.folder);
-  absl::Status status = is_new.status();
+  const auto made = PrepareFolder(arguments.folder);
+  absl::Status status = made.status();
   if (status.ok()) status = call.Connect(arguments.service.Deadline());
   const int code = call.ExitCode(
       status.ok() ? SegmentRun(arguments, call).Run()
                   : TellFailure("", status, arguments.service.json));
-  // A folder made for nothing goes; one with results in it cannot be removed.
-  std::error_code ignored;
-  if (code != kExitOk && is_new.value_or(false)) {
-    std::filesystem::remove(arguments.folder, ignored);
-  }
+  if (code != kExitOk && made.ok()) RemoveFolders(*made);
   return code;
 }
 

@@ -6,15 +6,19 @@
 #include "client/command/exit_code.h"
 #include "client/command/explain.h"
 #include "client/command/reporter.h"
+#include "client/command/staging_folder.h"
 #include "core/base/status_macros.h"
 
 namespace marrow::client {
 
 ServiceCall::ServiceCall(const ServiceArguments& arguments)
-    : arguments_(arguments), interrupt_([this] {
-        absl::MutexLock lock(&mutex_);
-        if (cancellable_ != nullptr) cancellable_->Cancel();
-      }) {}
+    : arguments_(arguments),
+      interrupt_(
+          [this] {
+            absl::MutexLock lock(&mutex_);
+            if (cancellable_ != nullptr) cancellable_->Cancel();
+          },
+          [] { AbandonStaging(absl::Seconds(1)); }) {}
 
 ServiceCall::~ServiceCall() {
   absl::MutexLock lock(&mutex_);

@@ -1,12 +1,9 @@
 // `marrow segment`, run as a person runs it, with the service in the process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/client/command/segment_fixture.h"
 #include "tests/testing/subprocess.h"
 
 namespace marrow {
@@ -25,20 +23,11 @@ using testing::Finished;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::ListFolder;
-using ::testing::Not;
 using testing::ProgramPath;
 using testing::ReadFile;
 using testing::RunProgram;
-using testing::Subprocess;
 using testing::TemporaryFolder;
 using testing::WriteFile;
-
-std::vector<std::string> Lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 // The numbers after the counts of an OFF file without comments.
 struct Off {
@@ -76,34 +65,6 @@ std::string Format(const Off& off) {
   }
   return text.str();
 }
-
-class MarrowSegmentTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    shared_ = new TemporaryFolder;
-    const Finished made =
-        RunProgram({ProgramPath("marrow"), "sample", "octopus", "--faces",
-                    "5000", "-o", Sample()});
-    ASSERT_EQ(made.code, 0) << made.err;
-  }
-  static void TearDownTestSuite() { delete shared_; }
-  static std::string Sample() { return *shared_ / "octopus.off"; }
-
-  Finished Segment(std::vector<std::string> arguments) {
-    std::vector<std::string> command = {ProgramPath("marrow"), "segment", "-o",
-                                        Out()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return RunProgram(command);
-  }
-  std::string Out(const std::string& name = "") const {
-    return (folder_ / "out") + (name.empty() ? "" : "/" + name);
-  }
-
-  static TemporaryFolder* shared_;
-  TemporaryFolder folder_;
-};
-
-TemporaryFolder* MarrowSegmentTest::shared_ = nullptr;
 
 TEST_F(MarrowSegmentTest, WritesEveryFileOfTheContract) {
   const Finished run = Segment({Sample(), "--levels", "2", "--png", "--parts"});
@@ -406,6 +367,19 @@ TEST_F(MarrowSegmentTest, JsonIsALineAnEventInOrder) {
                                  "completed", "summary"));
 }
 
+TEST_F(MarrowSegmentTest, OnATerminalJsonStandsWithoutABar) {
+  const Finished run =
+      RunProgram({"/usr/bin/script", "-qec",
+                  ProgramPath("marrow") + " segment --json --levels 1 -o " +
+                      Out() + " " + Sample(),
+                  "/dev/null"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.out, HasSubstr("\"progress\""));
+  for (const std::string& line : Lines(run.out)) {
+    EXPECT_TRUE(line.starts_with('{')) << line;
+  }
+}
+
 TEST_F(MarrowSegmentTest, SeveralFilesAreToldInTheirOrder) {
   std::vector<std::string> arguments = {"--levels", "1", "--threads", "3"};
   const std::string tetrahedron =
@@ -458,52 +432,6 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
   const Finished events = Segment({folder_ / "two.off", "--json", "--quiet"});
   EXPECT_THAT(events.out, HasSubstr("\"event\":\"warning\""));
   EXPECT_THAT(events.err, IsEmpty());
-}
-
-TEST_F(MarrowSegmentTest, ATimeoutEndsTheCallAndLeavesNothing) {
-  const Finished run = Segment({Sample(), "--timeout", "0.001"});
-  EXPECT_EQ(run.code, 1);
-  EXPECT_THAT(run.err, HasSubstr("--timeout"));
-  EXPECT_FALSE(std::filesystem::exists(Out()));
-}
-
-TEST_F(MarrowSegmentTest, ATimeoutEndsAReadThatNeverReturns) {
-  const std::string pipe = folder_ / "pipe.off";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const Finished run =
-      RunProgram({"/usr/bin/timeout", "30", ProgramPath("marrow"), "segment",
-                  pipe, "-o", Out(), "--timeout", "0.3"});
-  EXPECT_EQ(run.code, 1);
-  EXPECT_THAT(run.err, HasSubstr("pipe.off: not done in time"));
-  EXPECT_FALSE(std::filesystem::exists(Out()));
-}
-
-// A second signal would end the process without tidying; one must do.
-TEST_F(MarrowSegmentTest, CtrlCEndsSoonAndLeavesNothing) {
-  const std::string large = folder_ / "large.off";
-  ASSERT_EQ(RunProgram({ProgramPath("marrow"), "sample", "octopus", "--faces",
-                        "50000", "-o", large})
-                .code,
-            0);
-  Subprocess process({ProgramPath("marrow"), "segment", large, "-o", Out(),
-                      "--pairs", "1000", "--json"});
-  ASSERT_TRUE(process.WaitForOutput("\"stage\":\"spectrum\""));
-  const auto start = std::chrono::steady_clock::now();
-  process.Signal(SIGINT);
-  EXPECT_EQ(process.Wait(), 130);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
-  EXPECT_THAT(process.Out(), Not(HasSubstr("\"completed\"")));
-  EXPECT_FALSE(std::filesystem::exists(Out()));
-}
-
-TEST_F(MarrowSegmentTest, CtrlCEndsAReadThatNeverReturns) {
-  const std::string pipe = folder_ / "pipe.off";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  Subprocess process({ProgramPath("marrow"), "segment", Sample(), pipe, "-o",
-                      Out(), "--levels", "1", "--threads", "1"});
-  ASSERT_TRUE(process.WaitForOutput("octopus.seg"));
-  process.Signal(SIGINT);
-  EXPECT_EQ(process.Wait(), 130);
 }
 
 }  // namespace

@@ -2,9 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
+#include <memory>
+#include <thread>
 
+#include "client/command/staging_folder.h"
 #include "tests/testing/subprocess.h"
 
 namespace marrow::client {
@@ -16,6 +21,7 @@ using marrow::testing::TemporaryFolder;
 using marrow::testing::WriteFile;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(ResultFolderTest, TheStemIsTheNameWithoutFolderAndExtension) {
   EXPECT_EQ(StemOf("a/b.c/homer.off"), "homer");
@@ -75,6 +81,15 @@ TEST(ResultFolderTest, ReplacesAllResultsOfAnEarlierRunAndNothingElse) {
                           "a.parts.obj", "a.seg", "ab.seg", "mine"));
   EXPECT_EQ(ReadFile(folder / "a.seg"), "new");
   EXPECT_EQ(ReadFile(folder / "ab.seg"), "old");
+}
+
+TEST(ResultFolderTest, KnowsResultsWhoseNamesAreNoText) {
+  const TemporaryFolder folder;
+  WriteFile(folder / "a\xff.json", Record("\"a\\ufffd.level-3.seg\""));
+  WriteFile(folder / "a\xff.level-3.seg", "old");
+  ASSERT_TRUE(
+      PublishResults(folder.path(), "a\xff", {{"a\xff.json", "new"}}).ok());
+  EXPECT_THAT(ListFolder(folder.path()), ElementsAre("a\xff.json"));
 }
 
 TEST(ResultFolderTest, WhatNobodyListsIsLeftAlone) {
@@ -174,12 +189,47 @@ TEST(ResultFolderTest, AfterAFailureTheOldResultsStand) {
 
 TEST(ResultFolderTest, MakesFoldersAndRefusesWhatCannotBeOne) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(PrepareFolder(folder / "x/y").value());
-  EXPECT_FALSE(PrepareFolder(folder / "x/y").value());
+  EXPECT_THAT(PrepareFolder(folder / "x/y/z").value(),
+              ElementsAre(folder / "x/y/z", folder / "x/y", folder / "x"));
+  RemoveFolders({folder / "x/y/z"});
+  EXPECT_THAT(PrepareFolder(folder / "x/y/").value(), IsEmpty());
   EXPECT_TRUE(ListFolder(folder / "x/y").empty());
   WriteFile(folder / "file", "");
   const absl::Status status = PrepareFolder(folder / "file").status();
   EXPECT_THAT(std::string(status.message()), HasSubstr("-o"));
+  EXPECT_FALSE(PrepareFolder(folder / "file/z").ok());
+}
+
+// The process ends while others of its threads write.
+TEST(StagingFolderTest, AProcessThatEndsLeavesNone) {
+  const TemporaryFolder folder;
+  const auto end = [&] {
+    const StagingFolder staging = StagingFolder::Make(folder.path()).value();
+    WriteFile((staging.path() / "a.seg").string(), "new");
+    AbandonStaging(absl::Seconds(30));
+    _exit(0);
+  };
+  EXPECT_EXIT(end(), ::testing::ExitedWithCode(0), "");
+  EXPECT_THAT(ListFolder(folder.path()), IsEmpty());
+}
+
+TEST(StagingFolderTest, FilesThatMoveAreWaitedFor) {
+  const TemporaryFolder folder;
+  const auto end = [&] {
+    const StagingFolder staging = StagingFolder::Make(folder.path()).value();
+    std::filesystem::rename(folder / "a.seg", staging.path() / "a.seg");
+    auto move = std::make_unique<FilesMove>();
+    std::thread mover([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      std::filesystem::rename(staging.path() / "a.seg", folder / "a.seg");
+      move.reset();
+    });
+    AbandonStaging(absl::Seconds(30));
+    _exit(0);
+  };
+  WriteFile(folder / "a.seg", "old");
+  EXPECT_EXIT(end(), ::testing::ExitedWithCode(0), "");
+  EXPECT_THAT(ListFolder(folder.path()), ElementsAre("a.seg"));
 }
 
 }  // namespace
