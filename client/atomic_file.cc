@@ -40,6 +40,11 @@ absl::Status WriteError(const std::string& path, int error) {
   }
 }
 
+absl::Status IsFolderError(const std::string& path) {
+  return absl::FailedPreconditionError(
+      absl::StrCat(path, ": is a folder; name a file inside it"));
+}
+
 // An open file, closed when it goes out of scope.
 class Descriptor {
  public:
@@ -115,14 +120,22 @@ int WriteTemporary(const std::string& temporary, std::string_view bytes,
 
 }  // namespace
 
+absl::Status CheckWritable(const std::string& path) {
+  struct stat old;
+  const bool exists = stat(path.c_str(), &old) == 0;
+  if (exists && S_ISDIR(old.st_mode)) return IsFolderError(path);
+  if (exists && !S_ISREG(old.st_mode)) return absl::OkStatus();
+  const auto folder = std::filesystem::path(FollowLinks(path)).parent_path();
+  return access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0
+             ? absl::OkStatus()
+             : WriteError(path, errno);
+}
+
 absl::Status WriteFileAtomically(const std::string& path,
                                  std::string_view bytes) {
   struct stat old;
   const bool exists = stat(path.c_str(), &old) == 0;
-  if (exists && S_ISDIR(old.st_mode)) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(path, ": is a folder; name a file inside it"));
-  }
+  if (exists && S_ISDIR(old.st_mode)) return IsFolderError(path);
   if (exists && !S_ISREG(old.st_mode)) return WriteInPlace(path, bytes);
 
   const std::string target = FollowLinks(path);

@@ -23,6 +23,11 @@ namespace marrow {
 absl::Status WriteFileAtomically(const std::string& path,
                                  std::string_view bytes);
 
+// Whether there is a folder for the file at `path`, and it may be written to,
+// so that long work for it is not in vain. Errors are those of
+// WriteFileAtomically().
+absl::Status CheckWritable(const std::string& path);
+
 }  // namespace marrow
 
 #endif  // MARROW_CLIENT_ATOMIC_FILE_H_

@@ -81,7 +81,7 @@ absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {
       call.client().Inspect(input.payload, deadline - absl::Now()));
   if (arguments.service.json) {
     PrintJsonLine(ToJson(arguments.file, response));
-  } else {
+  } else if (!arguments.service.quiet) {
     PrintForPerson(arguments.file, response);
   }
   return absl::OkStatus();

@@ -65,7 +65,7 @@ completed (with the files that were written) or error; at last one summary.
 A large level or skeleton comes in several lines, whose numbers add up.
 Lines of several files may alternate. A failure is told on standard error too.
 
-Ctrl-C stops the work and leaves no file half written; a second one, or five
+Ctrl-C stops the work and leaves no file half written; a second one, or two
 seconds more, ends it at once.)";
 
 constexpr char kCutFooter[] =
@@ -141,6 +141,19 @@ std::string CheckBits(const std::string& text) {
              : absl::StrCat("'", text, "' is no number of bits from 1 to ",
                             kMaxQuantizationBits,
                             "; without the option all are sent");
+}
+
+std::string CheckThreads(const std::string& text) {
+  uint32_t threads = 0;
+  return ReadWholeNumber(text, threads) && threads >= 1 &&
+                 threads <= kMaxFilesAtOnce
+             ? ""
+             : absl::StrCat("'", text, "' is no number from 1 to ",
+                            kMaxFilesAtOnce);
+}
+
+std::string CheckFile(const std::string& text) {
+  return !text.empty() ? "" : "the name is empty; name a mesh file";
 }
 
 std::string CheckFolder(const std::string& text) {
@@ -278,6 +291,7 @@ void AddSegment(CLI::App& root, SegmentArguments& arguments) {
       "segment", "Split meshes into parts and write the results");
   app.add_option("FILE", arguments.files, "Mesh files")
       ->required()
+      ->check(CheckFile)
       ->type_name("");
   AddOutput(app, arguments.folder);
   app.add_flag("--png", arguments.png, "Write a picture a level");
@@ -287,8 +301,9 @@ void AddSegment(CLI::App& root, SegmentArguments& arguments) {
   AddService(app, arguments.service);
   AddQuiet(app, arguments.service);
   app.add_option("--threads", arguments.service.threads,
-                 "Files to work on at once; without it, one a core")
-      ->check(CLI::Range(1, 256))
+                 absl::StrCat("Files to work on at once, 1 to ",
+                              kMaxFilesAtOnce, "; without it, one a core"))
+      ->check(CheckThreads)
       ->type_name("N");
   app.footer(kSegmentFooter);
 }
@@ -298,6 +313,7 @@ void AddCutCommand(CLI::App& root, CutArguments& arguments) {
       "cut", "Cut the tree of a mesh that a server has segmented, anew");
   app.add_option("FILE", arguments.file, "Mesh file, as it was segmented")
       ->required()
+      ->check(CheckFile)
       ->type_name("");
   AddOutput(app, arguments.folder);
   app.add_flag("--png", arguments.png, "Write a picture");
@@ -314,8 +330,10 @@ void AddInspect(CLI::App& root, InspectArguments& arguments) {
       *root.add_subcommand("inspect", "Tell what is in a mesh file");
   app.add_option("FILE", arguments.file, "Mesh file")
       ->required()
+      ->check(CheckFile)
       ->type_name("");
   AddService(app, arguments.service);
+  AddQuiet(app, arguments.service);
 }
 
 void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
@@ -323,6 +341,7 @@ void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
       "spectrum", "Print the eigenvalues of a mesh, or write its eigenvectors");
   app.add_option("FILE", arguments.file, "Mesh file")
       ->required()
+      ->check(CheckFile)
       ->type_name("");
   AddPairs(app, "-k,--pairs", arguments.pairs);
   app.add_option("-o,--output", arguments.output,

@@ -1,5 +1,7 @@
 #include "client/command/reporter.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -61,7 +63,9 @@ void PrintJsonLine(const json& value) {
 
 Reporter::Reporter(const ReporterOptions& options,
                    std::vector<std::string> files)
-    : options_(options), bar_(!options.quiet) {
+    // On one terminal the lines of JSON would stand behind the bar.
+    : options_(options),
+      bar_(!options.quiet && !(options.json && isatty(STDOUT_FILENO) == 1)) {
   for (std::string& name : files) {
     files_.emplace_back().name = std::move(name);
   }

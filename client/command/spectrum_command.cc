@@ -138,6 +138,9 @@ void WarnOfZeros(const SpectrumArguments& arguments, const Spectrum& spectrum) {
 
 absl::Status ComputeSpectrum(const SpectrumArguments& arguments,
                              ServiceCall& call) {
+  if (!arguments.output.empty() && arguments.output != kStandardOutput) {
+    MARROW_RETURN_IF_ERROR(CheckWritable(arguments.output));
+  }
   const absl::Time deadline = arguments.service.Deadline();
   MARROW_ASSIGN_OR_RETURN(
       const Input input,

@@ -78,6 +78,7 @@ TEST(MarrowTest, ValuesThatAreNoneAreNamed) {
       {"--pairs", "2.5", "--pairs: '2.5' is no whole number"},
       {"--pairs", "010", "--pairs: '010' is no whole number"},
       {"--levels", "-1", "--levels: '-1' is no whole number"},
+      {"--threads", "17", "--threads: '17' is no number from 1 to 16"},
       {"--method", "PAPER", "--method: 'PAPER' is neither merge nor paper"},
       {"--method", "1", "--method: '1' is neither merge nor paper"},
       {"--closed", "3,x", "--closed: 'x' is no whole number"},
@@ -91,6 +92,11 @@ TEST(MarrowTest, ValuesThatAreNoneAreNamed) {
     EXPECT_THAT(run.err, HasSubstr(complaint));
   }
   EXPECT_THAT(Marrow({"frobnicate"}).err, HasSubstr("'frobnicate'"));
+  for (const char* command : {"segment", "cut", "inspect", "spectrum"}) {
+    const Finished run = Marrow({command, ""});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr("FILE: the name is empty"));
+  }
 }
 
 TEST(MarrowTest, InspectReportsOnAMesh) {
@@ -99,6 +105,7 @@ TEST(MarrowTest, InspectReportsOnAMesh) {
   const Finished person = Marrow({"inspect", folder / "t.off"});
   EXPECT_EQ(person.code, 0) << person.err;
   EXPECT_THAT(person.out, HasSubstr("components"));
+  EXPECT_THAT(Marrow({"inspect", folder / "t.off", "-q"}).out, IsEmpty());
   const json result =
       json::parse(Marrow({"inspect", folder / "t.off", "--json"}).out);
   EXPECT_EQ(result["report"]["faces"], 4);
@@ -241,6 +248,15 @@ TEST(MarrowTest, SpectrumRefusesAnOutputOfNoFormat) {
   EXPECT_EQ(run.code, 2);
   EXPECT_THAT(run.err, HasSubstr("neither .npz nor .npy"));
   EXPECT_FALSE(std::filesystem::exists(folder / "v.txt"));
+}
+
+// Before there is anything to write: the mesh is missing too.
+TEST(MarrowTest, SpectrumLooksAtItsOutputFirst) {
+  const TemporaryFolder folder;
+  const Finished run =
+      Marrow({"spectrum", folder / "none.off", "-o", folder / "no/such/v.npz"});
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("create its folder first"));
 }
 
 TEST(MarrowTest, SpectrumRefusesImpossibleNumbers) {
