@@ -24,6 +24,13 @@ void PrintBox(const v1::MeshReport& report) {
                report.box_max().y(), report.box_max().z());
 }
 
+const char* WhyNoGenus(const v1::MeshReport& report) {
+  if (report.nonmanifold_edges() > 0 || report.nonmanifold_vertices() > 0)
+    return "the surface is not manifold";
+  if (report.boundary_edges() > 0) return "the surface is open";
+  return "the surface has one side";
+}
+
 void PrintForPerson(const std::string& file,
                     const v1::InspectMeshResponse& response) {
   const v1::MeshReport& report = response.report();
@@ -44,7 +51,11 @@ void PrintForPerson(const std::string& file,
   PrintCount("unused points", report.unused_points());
   absl::PrintF("  %-24s %d\n", "Euler characteristic",
                report.euler_characteristic());
-  if (report.has_genus()) PrintCount("genus", report.genus());
+  if (report.has_genus()) {
+    PrintCount("genus", report.genus());
+  } else {
+    absl::PrintF("  %-24s none: %s\n", "genus", WhyNoGenus(report));
+  }
   absl::PrintF("  %-24s %g\n", "area", report.area());
   PrintBox(report);
   absl::PrintF("  %-24s %.1f s, %.0f MiB%s\n", "segmenting takes about",

@@ -142,6 +142,21 @@ TEST(MarrowTest, ADashIsNoFolderForResults) {
   }
 }
 
+TEST(MarrowTest, InspectTellsWhyThereIsNoGenus) {
+  const TemporaryFolder folder;
+  const auto inspect = [&](const std::string& text) {
+    WriteFile(folder / "t.off", text);
+    return Marrow({"inspect", folder / "t.off"}).out;
+  };
+  EXPECT_THAT(inspect("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+              HasSubstr("none: the surface is open"));
+  // The projective plane.
+  EXPECT_THAT(inspect("OFF\n6 10 0\n0 0 0\n4 0 1\n0 5 2\n0 1 6\n3 4 5\n7 2 3\n"
+                      "3 0 1 2\n3 0 2 3\n3 0 3 4\n3 0 4 5\n3 0 5 1\n"
+                      "3 1 2 4\n3 2 3 5\n3 3 4 1\n3 4 5 2\n3 5 1 3\n"),
+              HasSubstr("none: the surface has one side"));
+}
+
 TEST(MarrowTest, InspectTellsWhatWillBeDone) {
   const TemporaryFolder folder;
   // Two triangles turned against each other, with a point to spare.
