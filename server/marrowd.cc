@@ -12,14 +12,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <future>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "absl/strings/numbers.h"
+#include "absl/synchronization/notification.h"
 #include "absl/time/time.h"
 #include "server/json_log.h"
 #include "server/server.h"
@@ -187,19 +186,24 @@ int NextStopSignal() {
   return signal;
 }
 
+struct StopSignal {
+  absl::Notification came;
+  int number = 0;  // once it came
+};
+
 // The first signal. A second one ends the process at once, whatever that waits
 // for. Call it before any other thread is made, so that all inherit the mask
 // and none but the one that waits for signals sees them.
-std::future<int> TakeStopSignals() {
+const StopSignal& TakeStopSignals() {
   const sigset_t stop_signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  std::promise<int> first;
-  std::future<int> result = first.get_future();
-  std::thread([first = std::move(first)]() mutable {
-    first.set_value(NextStopSignal());
+  StopSignal& first = *new StopSignal;  // for a thread that never ends
+  std::thread([&first] {
+    first.number = NextStopSignal();
+    first.came.Notify();
     std::_Exit(kSignalExitBase + NextStopSignal());
   }).detach();
-  return result;
+  return first;
 }
 
 // gRPC's own messages become records of ours, once the server listens: until
@@ -223,7 +227,7 @@ std::string Address(const ServerOptions& options, int port) {
          std::to_string(port);
 }
 
-int Serve(const Flags& flags, std::future<int> stop_signal, JsonLog& log) {
+int Serve(const Flags& flags, const StopSignal& stop, JsonLog& log) {
   auto server = Server::Start(flags.options);
   if (!server.ok()) {
     std::cerr << "marrowd: " << server.status().message() << std::endl;
@@ -236,8 +240,9 @@ int Serve(const Flags& flags, std::future<int> stop_signal, JsonLog& log) {
             << std::endl;
   log.Write({LogLevel::kInfo, "listening", {{"address", address}}, {}});
 
-  const int signal = stop_signal.get();
-  log.Write({LogLevel::kInfo, "draining", {{"signal", strsignal(signal)}}, {}});
+  stop.came.WaitForNotification();
+  log.Write(
+      {LogLevel::kInfo, "draining", {{"signal", strsignal(stop.number)}}, {}});
   (*server)->Drain(std::chrono::milliseconds(
       static_cast<int64_t>(flags.grace_seconds * 1000)));
   server->reset();
@@ -250,7 +255,7 @@ int Serve(const Flags& flags, std::future<int> stop_signal, JsonLog& log) {
 
 int main(int argc, char** argv) {
   OpenStandardStreams();
-  std::future<int> stop_signal = TakeStopSignals();
+  const StopSignal& stop = TakeStopSignals();
   signal(SIGPIPE, SIG_IGN);
 
   CLI::App app(
@@ -274,5 +279,5 @@ int main(int argc, char** argv) {
   grpc_log = &log;
   gpr_set_log_function(&LogFromGrpc);
   flags.options.log = [&log](const LogRecord& record) { log.Write(record); };
-  return Serve(flags, std::move(stop_signal), log);
+  return Serve(flags, stop, log);
 }

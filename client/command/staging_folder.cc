@@ -65,7 +65,7 @@ absl::StatusOr<StagingFolder> StagingFolder::Make(const std::string& parent) {
 
 StagingFolder::StagingFolder(fs::path path) : path_(std::move(path)) {}
 
-StagingFolder::StagingFolder(StagingFolder&& other)
+StagingFolder::StagingFolder(StagingFolder&& other) noexcept
     : path_(std::exchange(other.path_, fs::path())) {}
 
 StagingFolder::~StagingFolder() {

@@ -17,7 +17,7 @@ namespace marrow::client {
 class StagingFolder {
  public:
   static absl::StatusOr<StagingFolder> Make(const std::string& parent);
-  StagingFolder(StagingFolder&& other);
+  StagingFolder(StagingFolder&& other) noexcept;
   StagingFolder& operator=(StagingFolder&&) = delete;
   ~StagingFolder();
 
