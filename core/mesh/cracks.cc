@@ -1,6 +1,7 @@
 #include "core/mesh/cracks.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/base/cancellable.h"
@@ -15,20 +16,77 @@ namespace {
 
 constexpr double kMostBreadth = 1e-5;
 constexpr double kMostOfEdge = 0.1;
+constexpr double kMostOfEdgeInSoup = 0.05;
+// Of the vertices of a soup, and of those on rims.
+constexpr double kLeastOnRims = 0.5;
+constexpr double kLeastNear = 0.9;
 
 // How far from each vertex others are one with it, squared.
 std::vector<double> SquaredReach(const TriangleMesh& mesh,
-                                 const Positions& points) {
-  std::vector<double> reach(mesh.NumVertices(), kMostBreadth * kMostBreadth);
+                                 const Positions& points, double most_breadth,
+                                 double most_of_edge) {
+  std::vector<double> reach(mesh.NumVertices(), most_breadth * most_breadth);
   for (const Triangle& face : mesh.faces)
     for (int i = 0; i < 3; ++i) {
       const uint32_t u = face[i], v = face[(i + 1) % 3];
-      const double limit = kMostOfEdge * kMostOfEdge *
+      const double limit = most_of_edge * most_of_edge *
                            (points.row(u) - points.row(v)).squaredNorm();
       reach[u] = std::min(reach[u], limit);
       reach[v] = std::min(reach[v], limit);
     }
   return reach;
+}
+
+// More are near to no corner of a surface. A hub of very many is closed as far
+// as each finds so many, or it would cost the square of them.
+constexpr size_t kMostNear = 256;
+
+// nanoflann's view of where those go that are within a radius, squared.
+struct FirstNear {
+  double radius;
+  std::vector<std::pair<uint32_t, double>> found = {};
+
+  bool addPoint(double square, uint32_t i) {
+    if (square < radius) found.push_back({i, square});
+    return found.size() < kMostNear;
+  }
+  double worstDist() const { return radius; }
+  bool full() const { return true; }
+  size_t size() const { return found.size(); }
+};
+
+// Calls visit(u, v) for each of `rim` and every other one that both reach.
+template <typename Visit>
+absl::Status ForEachNear(const Positions& points,
+                         const std::vector<uint32_t>& rim,
+                         const std::vector<double>& reach,
+                         const CancelToken& cancel, const Visit& visit) {
+  const VertexCloud cloud{points, rim};
+  const VertexTree tree(3, cloud);
+  FirstNear near;
+  return ForEachIndex(rim.size(), cancel, [&](size_t k) {
+    const uint32_t v = rim[k];
+    const Eigen::Vector3d place = points.row(v).transpose();
+    near.radius = reach[v];
+    near.found.clear();
+    tree.findNeighbors(near, place.data(), nanoflann::SearchParams());
+    for (const auto& [i, square] : near.found)
+      if (square < reach[rim[i]] && rim[i] != v) visit(v, rim[i]);
+  });
+}
+
+absl::StatusOr<bool> IsSoup(const Positions& points,
+                            const std::vector<uint32_t>& rim,
+                            const std::vector<double>& reach,
+                            const CancelToken& cancel) {
+  if (rim.size() < kLeastOnRims * static_cast<double>(reach.size()))
+    return false;
+  std::vector<bool> is_near(reach.size(), false);
+  MARROW_RETURN_IF_ERROR(ForEachNear(
+      points, rim, reach, cancel,
+      [&](uint32_t u, uint32_t v) { is_near[u] = is_near[v] = true; }));
+  const auto count = std::count(is_near.begin(), is_near.end(), true);
+  return count >= kLeastNear * static_cast<double>(rim.size());
 }
 
 }  // namespace
@@ -41,19 +99,15 @@ absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
   DisjointSets sets(mesh.NumVertices());
   if (rim.empty()) return sets.Representatives();
   const Positions points = ToUnitBox(mesh).points;
-  const std::vector<double> reach = SquaredReach(mesh, points);
+  std::vector<double> reach = SquaredReach(
+      mesh, points, std::numeric_limits<double>::infinity(), kMostOfEdgeInSoup);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  const VertexCloud cloud{points, rim};
-  const VertexTree tree(3, cloud);
-  std::vector<std::pair<uint32_t, double>> near;
-  MARROW_RETURN_IF_ERROR(ForEachIndex(rim.size(), cancel, [&](size_t k) {
-    const uint32_t v = rim[k];
-    const Eigen::Vector3d place = points.row(v).transpose();
-    tree.radiusSearch(place.data(), reach[v], near,
-                      nanoflann::SearchParams(32, 0, false));
-    for (const auto& [i, square] : near)
-      if (square < reach[rim[i]]) sets.Union(v, rim[i]);
-  }));
+  MARROW_ASSIGN_OR_RETURN(const bool is_soup,
+                          IsSoup(points, rim, reach, cancel));
+  if (!is_soup) reach = SquaredReach(mesh, points, kMostBreadth, kMostOfEdge);
+  MARROW_RETURN_IF_ERROR(
+      ForEachNear(points, rim, reach, cancel,
+                  [&](uint32_t u, uint32_t v) { sets.Union(u, v); }));
   return sets.Representatives();
 }
 

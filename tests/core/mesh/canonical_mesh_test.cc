@@ -192,6 +192,27 @@ TEST(CanonicalMeshTest, ClosesCracks) {
   EXPECT_EQ(Canonical(torus).report.crack_points, 0u);
 }
 
+// At a thousandth of an edge, where a tolerance of their own would close some
+// of the corners and leave a sieve.
+TEST(CanonicalMeshTest, ClosesASoupAsAWhole) {
+  const TriangleMesh ball = marrow::Icosphere(3);
+  std::mt19937 random(7);
+  DecodedMesh soup;
+  soup.positions.resize(3 * ball.faces.size(), 3);
+  for (const Triangle& face : ball.faces) {
+    const auto first = static_cast<uint32_t>(3 * soup.faces.size());
+    for (uint32_t i = 0; i < 3; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        soup.positions(first + i, axis) =
+            ball.positions(face[i], axis) + 2e-4 * (random() * 0x1p-32 - 0.5);
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  const CanonicalMesh c = Canonical(soup);
+  EXPECT_EQ(c.mesh.NumVertices(), ball.NumVertices());
+  EXPECT_EQ(c.report.components, 1u);
+  EXPECT_EQ(c.report.boundary_edges, 0u);
+}
+
 // A gap of a thousandth is none.
 TEST(CanonicalMeshTest, LeavesGapsOpen) {
   const CanonicalMesh c = Canonical(MeshOf({{0, 0, 0},
