@@ -1,5 +1,6 @@
 #include "core/hierarchy/fine_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -42,19 +43,37 @@ SegmentTree Spread(const SegmentTree& tree, const CoarseMesh& coarse,
   return result;
 }
 
+// Those of `vertices` that the faces have; a corner of the first where there
+// are none.
+std::vector<uint32_t> OfFaces(const std::vector<uint32_t>& vertices,
+                              const TriangleMesh& mesh,
+                              const std::vector<uint32_t>& faces) {
+  std::vector<bool> has(mesh.NumVertices(), false);
+  for (uint32_t f : faces)
+    for (uint32_t v : mesh.faces[f]) has[v] = true;
+  std::vector<uint32_t> result;
+  for (uint32_t v : vertices)
+    if (has[v]) result.push_back(v);
+  if (result.empty()) result.push_back(mesh.faces[faces.front()][0]);
+  return result;
+}
+
+// Whether every piece has one of the first `count` faces.
+bool AllHaveFaces(const std::vector<uint32_t>& piece_of_face, uint32_t count,
+                  uint32_t pieces) {
+  std::vector<bool> has(pieces, false);
+  for (uint32_t f = 0; f < count; ++f) has[piece_of_face[f]] = true;
+  return std::ranges::find(has, false) == has.end();
+}
+
 }  // namespace
 
 std::vector<uint32_t> ToFine(const std::vector<uint32_t>& vertices,
                              const CoarseMesh& coarse, const TriangleMesh& fine,
                              const std::vector<uint32_t>& faces) {
-  std::vector<bool> has(fine.NumVertices(), false);
-  for (uint32_t f : faces)
-    for (uint32_t v : fine.faces[f]) has[v] = true;
-  std::vector<uint32_t> result;
-  for (uint32_t v : vertices)
-    if (has[coarse.vertices[v]]) result.push_back(coarse.vertices[v]);
-  if (result.empty()) result.push_back(fine.faces[faces.front()][0]);
-  return result;
+  std::vector<uint32_t> own;
+  for (uint32_t v : vertices) own.push_back(coarse.vertices[v]);
+  return OfFaces(own, fine, faces);
 }
 
 SegmentTree ToFine(const SegmentTree& tree, const CoarseMesh& coarse,
@@ -64,9 +83,21 @@ SegmentTree ToFine(const SegmentTree& tree, const CoarseMesh& coarse,
   return Spread(tree, coarse, fine, own, coarse.coarse_face);
 }
 
+SegmentTree WithoutPatches(const SegmentTree& tree, const TriangleMesh& mesh,
+                           uint32_t count) {
+  SegmentTree result = tree;
+  for (SegmentNode& node : result.nodes) {
+    node.faces.erase(
+        std::lower_bound(node.faces.begin(), node.faces.end(), count),
+        node.faces.end());
+    node.medial_structure = OfFaces(node.medial_structure, mesh, node.faces);
+  }
+  return result;
+}
+
 absl::StatusOr<MergeTree> ToFine(const MergeTree& merged,
                                  const CoarseMesh& coarse,
-                                 const TriangleMesh& fine,
+                                 const TriangleMesh& fine, uint32_t count,
                                  const Adjacency& adjacency,
                                  const FaceLinks& links,
                                  const CancelToken& cancel) {
@@ -76,10 +107,13 @@ absl::StatusOr<MergeTree> ToFine(const MergeTree& merged,
   result.piece_of_face = coarse.coarse_face;
   for (uint32_t& piece : result.piece_of_face)
     piece = merged.piece_of_face[piece];
+  const std::vector<uint32_t> as_coarse = result.piece_of_face;
   MARROW_RETURN_IF_ERROR(
       SmoothBoundaries(fine, adjacency, FaceAreaShares(fine), links,
                        kBreadth * UsualEdge(coarse.canonical.mesh), cancel,
                        result.piece_of_face));
+  if (!AllHaveFaces(result.piece_of_face, count, merged.order.num_pieces))
+    result.piece_of_face = as_coarse;
   result.tree = Spread(merged.tree, coarse, fine, merged.piece_of_face,
                        result.piece_of_face);
   return result;

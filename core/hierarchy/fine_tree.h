@@ -29,12 +29,19 @@ std::vector<uint32_t> ToFine(const std::vector<uint32_t>& vertices,
 SegmentTree ToFine(const SegmentTree& tree, const CoarseMesh& coarse,
                    const TriangleMesh& fine);
 
-// The same of merged pieces, whose boundaries are made smooth on the fine mesh
-// first (SmoothBoundaries(), two coarse edges to either side). Errors:
-// CANCELLED.
+// A tree of a mesh with patches (core/mesh/patches.h) without these: nodes have
+// those of their faces that are among the first `count`, and those of their
+// medial structures that these have; a corner of the first where there are
+// none. Thread safe.
+SegmentTree WithoutPatches(const SegmentTree& tree, const TriangleMesh& mesh,
+                           uint32_t count);
+
+// The first of merged pieces, whose boundaries are made smooth on the fine mesh
+// first (SmoothBoundaries(), two coarse edges to either side), unless that
+// would leave a piece none of the first `count` fine faces. Errors: CANCELLED.
 absl::StatusOr<MergeTree> ToFine(const MergeTree& merged,
                                  const CoarseMesh& coarse,
-                                 const TriangleMesh& fine,
+                                 const TriangleMesh& fine, uint32_t count,
                                  const Adjacency& adjacency,
                                  const FaceLinks& links,
                                  const CancelToken& cancel);

@@ -159,6 +159,10 @@ absl::StatusOr<MergeTree> BuildMergeTree(
                       surface.curvature, context.share);
   MARROW_RETURN_IF_ERROR(
       PlaceBoundaries(context, surface, meter, cancel, result.piece_of_face));
+  if (!context.is_patch.empty()) {
+    JoinPatches(context.adjacency, context.is_patch, result.piece_of_face);
+    NumberByArea(surface.areas, result.piece_of_face);
+  }
   MARROW_ASSIGN_OR_RETURN(
       result.order,
       MergePieces(PieceGraph(context.adjacency, result.piece_of_face,

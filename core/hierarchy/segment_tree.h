@@ -35,7 +35,8 @@ struct SegmentNode {
 // faces of a node's children partition the node's (an only child has them
 // all); every parent's id is less than its children's; siblings are ordered by
 // falling area, then least face, as they were on what was computed on: without
-// what is attached (operators/bodies.h), by the coarse mesh where there is one.
+// what is attached, with patches (operators/bodies.h), by the coarse mesh where
+// there is one.
 struct SegmentTree {
   std::vector<SegmentNode> nodes;
 

@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numeric>
 #include <utility>
 
 #include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
 #include "core/mesh/components.h"
+#include "core/mesh/mesh_report.h"
+#include "core/mesh/patches.h"
 #include "core/mesh/submesh.h"
 #include "core/operators/laplacian.h"
+#include "core/operators/nearest_face.h"
 #include "core/operators/scenery.h"
 #include "core/operators/seams.h"
-#include "core/operators/surface_points.h"
 
 namespace marrow {
 namespace {
@@ -185,73 +186,6 @@ size_t CountBodies(const std::vector<Part>& parts) {
   return count;
 }
 
-// Finds the face of the bodies nearest to a place, by their vertices and by
-// points inside coarse faces.
-class NearestFace {
- public:
-  // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_left`, by face:
-  // whether it is of none of them.
-  NearestFace(const TriangleMesh& mesh,
-              const std::vector<uint32_t>& face_of_vertex,
-              const std::vector<bool>& is_left, double near)
-      : unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
-        places_(mesh.positions * unit_),
-        cloud_(places_, face_of_vertex),
-        tree_(3, Add(mesh, is_left, near)) {}
-
-  // Lowers `best`, a squared distance, and tells the face where it could.
-  void Improve(uint32_t from, double& best, uint32_t& nearest) const {
-    const Eigen::Vector3d place = places_.row(from).transpose();
-    uint32_t found = 0;
-    double distance = std::numeric_limits<double>::infinity();
-    tree_.knnSearch(place.data(), 1, &found, &distance);
-    if (!(distance < best)) return;
-    best = distance;
-    nearest = cloud_.faces[found];
-  }
-
- private:
-  // nanoflann's view of the points.
-  struct Cloud {
-    Cloud(const Positions& vertices,
-          const std::vector<uint32_t>& face_of_vertex) {
-      for (uint32_t v = 0; v < face_of_vertex.size(); ++v) {
-        if (face_of_vertex[v] == kNoIndex) continue;
-        places.push_back(vertices.row(v));
-        faces.push_back(face_of_vertex[v]);
-      }
-    }
-    size_t kdtree_get_point_count() const { return places.size(); }
-    double kdtree_get_pt(size_t i, size_t d) const { return places[i][d]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-      return false;
-    }
-
-    std::vector<Eigen::RowVector3d> places;
-    std::vector<uint32_t> faces;
-  };
-
-  const Cloud& Add(const TriangleMesh& mesh, const std::vector<bool>& is_left,
-                   double near) {
-    const FacePoints inside = PointsInFaces(mesh, places_, near * unit_);
-    for (uint32_t i = 0; i < inside.face.size(); ++i) {
-      if (is_left[inside.face[i]]) continue;
-      cloud_.places.push_back(inside.places.row(i));
-      cloud_.faces.push_back(inside.face[i]);
-    }
-    return cloud_;
-  }
-
-  // Squares of coordinates must neither overflow nor vanish.
-  double unit_;
-  Positions places_;
-  Cloud cloud_;
-  nanoflann::KDTreeSingleIndexAdaptor<
-      nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>
-      tree_;
-};
-
 // Rule 4, to the first `count` bodies: the others are scenery. `near` is the
 // bridging distance.
 absl::Status Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
@@ -348,12 +282,33 @@ Body WholeBody(const CanonicalMesh& mesh, const CancelToken& cancel) {
   return body;
 }
 
-// Rule 6, noted in the report.
+// Rule 6.
+absl::Status Patch(const CancelToken& cancel, Bodies& bodies) {
+  for (Body& body : bodies.bodies) {
+    if (body.canonical->report.boundary_edges == 0) continue;
+    MARROW_ASSIGN_OR_RETURN(const std::vector<Triangle> patches,
+                            PatchHoles(body.canonical->mesh, cancel));
+    const uint32_t faces = body.canonical->mesh.NumFaces();
+    if (patches.empty() ||
+        static_cast<double>(patches.size()) < kSievePatches * faces)
+      continue;
+    auto patched = std::make_shared<CanonicalMesh>();
+    patched->mesh = body.canonical->mesh;
+    patched->mesh.faces.insert(patched->mesh.faces.end(), patches.begin(),
+                               patches.end());
+    patched->report = ReportOn(patched->mesh, cancel);
+    patched->geometry_digest = GeometryDigestOf(patched->mesh);
+    body.patched = std::move(patched);
+  }
+  return cancel.Check();
+}
+
+// Rule 7, noted in the report.
 void CoarsenLarge(const CancelToken& cancel, Bodies& bodies,
                   MeshReport& report) {
   report.coarse_vertices = 0;
   for (Body& body : bodies.bodies) {
-    const TriangleMesh& mesh = body.canonical->mesh;
+    const TriangleMesh& mesh = body.Patched().mesh;
     if (mesh.NumVertices() <= kLargeBody) continue;
     CoarseMesh coarse = Coarsen(mesh, kCoarseVertices, cancel);
     if (cancel.IsCancelled()) return;
@@ -433,9 +388,17 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
 
 Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
   absl::StatusOr<Bodies> result = SortOut(mesh, cancel);
-  if (!result.ok()) return {};
+  if (!result.ok() || !Patch(cancel, *result).ok()) return {};
   CoarsenLarge(cancel, *result, mesh.report);
   return *std::move(result);
+}
+
+std::vector<bool> PatchesOf(const Body& body) {
+  if (body.patched == nullptr) return {};
+  std::vector<bool> is_patch(body.Computed().mesh.NumFaces(), true);
+  for (uint32_t f = 0; f < body.faces.size(); ++f)
+    is_patch[body.coarse == nullptr ? f : body.coarse->coarse_face[f]] = false;
+  return is_patch;
 }
 
 std::vector<uint32_t> ToWholeVertices(const Body& body,

@@ -23,7 +23,12 @@
 //     so a mesh with specks is segmented exactly as without.
 //  5. Scenery is a body each, that counts for kSceneryShare of the largest.
 //     Nothing is attached to it.
-//  6. A body of more than kLargeBody vertices is computed on a coarse mesh of
+//  6. The small holes of a sieve, a body that takes kSievePatches faces a face
+//     or more, are patched (core/mesh/patches.h): of a surface with very many
+//     holes, eigen-pairs, curvature and boundaries tell little, while fewer do
+//     no harm. Patches are computed on, and no more: they have no label. But
+//     what they join is in one piece.
+//  7. A body of more than kLargeBody vertices is computed on a coarse mesh of
 //     about kCoarseVertices (core/mesh/coarse_mesh.h): its parts are far larger
 //     than what that leaves out. Not where half of the vertices cannot go.
 #ifndef MARROW_CORE_OPERATORS_BODIES_H_
@@ -46,6 +51,8 @@ inline constexpr double kMainShare = 0.05;
 inline constexpr double kBridgedGap = 0.1;
 inline constexpr double kBodyShare = 0.05;
 inline constexpr uint32_t kMaxBodies = 128;
+// One face in a hundred missing changes next to nothing, one in ten a lot.
+inline constexpr double kSievePatches = 0.04;
 inline constexpr double kSceneryShare = 0.05;
 inline constexpr uint32_t kLargeBody = 80'000;
 inline constexpr uint32_t kCoarseVertices = 40'000;
@@ -54,7 +61,10 @@ struct Body {
   // A submesh, its shells sewn, or, where there is one component, the whole
   // mesh itself, which must then outlive this.
   std::shared_ptr<const CanonicalMesh> canonical;
-  std::shared_ptr<const CoarseMesh> coarse;  // of canonical; null for most
+  // It with its holes patched: the same vertices, the same faces, and then the
+  // patches. Null for what is no sieve.
+  std::shared_ptr<const CanonicalMesh> patched;
+  std::shared_ptr<const CoarseMesh> coarse;  // of Patched(); null for most
   std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
   std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
   std::vector<Bridge> bridges;     // between its shells, own vertices
@@ -64,9 +74,12 @@ struct Body {
   // Of the area of all bodies, scenery counting as rule 5 says.
   double share = 1;
 
+  const CanonicalMesh& Patched() const {
+    return patched == nullptr ? *canonical : *patched;
+  }
   // What is computed on.
   const CanonicalMesh& Computed() const {
-    return coarse == nullptr ? *canonical : coarse->canonical;
+    return coarse == nullptr ? Patched() : coarse->canonical;
   }
 };
 
@@ -85,9 +98,13 @@ struct Bodies {
   }
   // Whether what is computed on is the whole mesh.
   bool IsComputedWhole() const {
-    return IsWhole() && bodies[0].coarse == nullptr;
+    return IsWhole() && &bodies[0].Computed() == bodies[0].canonical.get();
   }
 };
+
+// By face that is computed on, whether it is a patch and of no face of the
+// body; empty where none is.
+std::vector<bool> PatchesOf(const Body& body);
 
 // Takes the rules above to a mesh, and notes in its report what came of them.
 // Deterministic, O(n log^2 n). Neither the result nor what is noted is of use

@@ -153,6 +153,15 @@ std::vector<Piece> MakePieces(const Region& region, const DiffusionMap& Phi,
   return pieces;
 }
 
+// By local face; empty where the mesh has none.
+std::vector<bool> PatchesOf(const SplitContext& context, const Region& region) {
+  std::vector<bool> is_patch;
+  if (context.is_patch.empty()) return is_patch;
+  for (uint32_t f = 0; f < region.NumFaces(); ++f)
+    is_patch.push_back(context.is_patch[region.MeshFace(f)]);
+  return is_patch;
+}
+
 RegionSplit Unsplit(StopReason reason) {
   RegionSplit split;
   split.stop_reason = reason;
@@ -192,6 +201,7 @@ absl::StatusOr<RegionSplit> SplitRegion(const SplitContext& context,
   MARROW_RETURN_IF_ERROR(cancel.Check());
   JoinStrayPieces(region.adjacency(), region.areas(), region.links(),
                   num_labels, relaxed.labels);
+  JoinPatches(region.adjacency(), PatchesOf(context, region), relaxed.labels);
 
   RegionSplit split;
   split.iterations = relaxed.iterations;

@@ -82,6 +82,9 @@ struct SplitContext {
   // Where the fronts step from shell to shell, as the operator does.
   FaceLinks links = {};
   double share = 1;  // Body::share by that of the largest body
+  // By face, whether it fills a hole; empty where none does. A piece has
+  // others.
+  std::vector<bool> is_patch = {};
 };
 
 struct Piece {

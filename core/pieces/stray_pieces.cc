@@ -112,4 +112,29 @@ void JoinStrayPieces(const Adjacency& adjacency,
   }
 }
 
+void JoinPatches(const Adjacency& adjacency, const std::vector<bool>& is_patch,
+                 std::vector<uint32_t>& labels) {
+  if (is_patch.empty()) return;
+  const uint32_t count = *std::ranges::max_element(labels) + 1;
+  std::vector<bool> is_there(count, false);
+  for (uint32_t f = 0; f < labels.size(); ++f)
+    if (!is_patch[f]) is_there[labels[f]] = true;
+  for (bool moved = true; std::exchange(moved, false);) {
+    std::vector<uint32_t> target(count, kNoIndex);
+    for (uint32_t e = 0; e < adjacency.NumEdges(); ++e) {
+      uint32_t least = kNoIndex;
+      for (uint32_t f : adjacency.EdgeFaces(e))
+        if (is_there[labels[f]]) least = std::min(least, labels[f]);
+      for (uint32_t f : adjacency.EdgeFaces(e))
+        if (!is_there[labels[f]])
+          target[labels[f]] = std::min(target[labels[f]], least);
+    }
+    for (uint32_t& label : labels)
+      if (target[label] != kNoIndex) {
+        label = target[label];
+        moved = true;
+      }
+  }
+}
+
 }  // namespace marrow

@@ -25,6 +25,13 @@ void JoinStrayPieces(const Adjacency& adjacency,
                      size_t num_labels, std::vector<uint32_t>& labels,
                      double most = 1);
 
+// `is_patch`, by face: whether it fills a hole (core/mesh/patches.h); empty
+// where no face does. A label that only patches have becomes that of faces
+// beside it, so that every label left is of something that is there, if
+// anything is.
+void JoinPatches(const Adjacency& adjacency, const std::vector<bool>& is_patch,
+                 std::vector<uint32_t>& labels);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_PIECES_STRAY_PIECES_H_

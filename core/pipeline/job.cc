@@ -78,7 +78,8 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
                pulled_,
                own_ ? own_->areas : prepared.areas,
                FaceLinks(own_ ? own_->adjacency : prepared.adjacency, bridges),
-               body.share / prepared.bodies.bodies[0].share} {}
+               body.share / prepared.bodies.bodies[0].share,
+               PatchesOf(body)} {}
 
 absl::Status PreparedBody::Pull(double area_share, double delta,
                                 const CancelToken& cancel,

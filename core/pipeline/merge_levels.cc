@@ -20,13 +20,22 @@ namespace {
 // What was found on a coarse mesh, on the body's own.
 absl::StatusOr<MergeTree> OnOwnMesh(const Job& job, const Body& body,
                                     MergeTree merged) {
-  if (body.coarse == nullptr) return merged;
-  const TriangleMesh& mesh = body.canonical->mesh;
-  std::optional<Adjacency> own;
-  if (!job.prepared.bodies.IsWhole()) own.emplace(mesh);
-  const Adjacency& adjacency = own ? *own : job.prepared.adjacency;
-  return ToFine(merged, *body.coarse, mesh, adjacency,
-                FaceLinks(adjacency, body.bridges), job.cancel);
+  const uint32_t count = body.canonical->mesh.NumFaces();
+  if (body.coarse != nullptr) {
+    const TriangleMesh& mesh = body.Patched().mesh;
+    std::optional<Adjacency> own;
+    if (!job.prepared.bodies.IsWhole() || body.patched != nullptr)
+      own.emplace(mesh);
+    const Adjacency& adjacency = own ? *own : job.prepared.adjacency;
+    MARROW_ASSIGN_OR_RETURN(
+        merged, ToFine(merged, *body.coarse, mesh, count, adjacency,
+                       FaceLinks(adjacency, body.bridges), job.cancel));
+  }
+  if (body.patched != nullptr) {
+    merged.tree = WithoutPatches(merged.tree, body.patched->mesh, count);
+    merged.piece_of_face.resize(count);
+  }
+  return merged;
 }
 
 // The tree of every body, in their order.

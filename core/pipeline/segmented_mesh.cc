@@ -132,7 +132,7 @@ std::vector<uint32_t> SegmentedMesh::MedialStructure(
   } else {
     vertices =
         MedialStructureOf(context, ComputedFaces(*body.coarse, own), options_);
-    vertices = ToFine(vertices, *body.coarse, body.canonical->mesh, own);
+    vertices = ToFine(vertices, *body.coarse, body.Patched().mesh, own);
   }
   return ToWholeVertices(body, prepared().canonical.mesh, std::move(vertices),
                          faces);
@@ -149,7 +149,10 @@ uint64_t SegmentedMesh::Bytes() const {
   // The canonical mesh, its maps, its adjacency; the bodies have them again
   // where they are not the mesh itself.
   constexpr uint64_t kBytesAFace = 120;
-  const uint64_t copies = workspace_->bodies.IsWhole() ? 1 : 2;
+  const bool is_patched = std::ranges::any_of(
+      workspace_->bodies.bodies,
+      [](const Body& body) { return body.patched != nullptr; });
+  const uint64_t copies = (workspace_->bodies.IsWhole() ? 1 : 2) + is_patched;
   uint64_t bytes = copies * kBytesAFace * canonical().mesh.NumFaces() +
                    sizeof(uint32_t) * (canonical().face_map.size() +
                                        canonical().point_map.size());

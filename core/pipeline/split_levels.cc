@@ -104,10 +104,14 @@ class Forest {
     for (size_t b = 0; b < bodies_.size(); ++b) {
       const SegmentTree& tree = bodies_[b].builder.tree();
       const Body& body = prepared_.bodies.bodies[b];
-      trees.push_back(body.coarse == nullptr
-                          ? &tree
-                          : &fine.emplace_back(ToFine(tree, *body.coarse,
-                                                      body.canonical->mesh)));
+      trees.push_back(&tree);
+      if (body.coarse != nullptr)
+        trees.back() = &fine.emplace_back(
+            ToFine(*trees.back(), *body.coarse, body.Patched().mesh));
+      if (body.patched != nullptr)
+        trees.back() =
+            &fine.emplace_back(WithoutPatches(*trees.back(), body.patched->mesh,
+                                              body.canonical->mesh.NumFaces()));
     }
     tree_ = PlantForest(prepared_.canonical, prepared_.areas, prepared_.bodies,
                         trees, BodyRoots::kLevelOne);

@@ -13,16 +13,19 @@
 
 namespace marrow {
 
-// Number of edge-connected pieces that the faces form.
+// Number of edge-connected pieces that the faces form, or they and all faces
+// from the number `first_patch` on.
 uint32_t CountPieces(const Adjacency& adjacency,
-                     const std::vector<uint32_t>& faces);
+                     const std::vector<uint32_t>& faces,
+                     uint32_t first_patch = kNoIndex);
 
 // The vertices of the faces, ascending.
 std::vector<uint32_t> VerticesOf(const TriangleMesh& mesh,
                                  const std::vector<uint32_t>& faces);
 
 // The invariants of segment_tree.h, and that every segment is in one piece
-// where its parent is. `finished`: every leaf tells why it is one. `merged`:
+// where its parent is, what patches join (core/operators/bodies.h) being one.
+// `finished`: every leaf tells why it is one. `merged`:
 // the tree is one of merged pieces, else of the paper's recursion. `mesh_area`
 // in the units of the positions.
 void ExpectSoundTree(const TriangleMesh& mesh, const Adjacency& adjacency,

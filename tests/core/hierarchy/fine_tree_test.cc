@@ -77,8 +77,8 @@ TEST_F(FineTreeTest, MergedPiecesHaveShorterBoundaries) {
   for (uint32_t f = 0; f < coarse_.faces.size(); ++f)
     merged.piece_of_face.push_back(X(coarse_.canonical.mesh, f) > 0);
   const Adjacency adjacency(fine_);
-  const auto result =
-      ToFine(merged, coarse_, fine_, adjacency, {}, CancelToken());
+  const auto result = ToFine(merged, coarse_, fine_, fine_.NumFaces(),
+                             adjacency, {}, CancelToken());
   ASSERT_TRUE(result.ok()) << result.status();
   ExpectHalves(result->tree);
   EXPECT_EQ(result->order.merges.size(), 1u);
@@ -96,6 +96,22 @@ TEST_F(FineTreeTest, MergedPiecesHaveShorterBoundaries) {
   };
   const double before = Length(ToFine(merged.tree, coarse_, fine_));
   EXPECT_LT(Length(result->tree), 0.95 * before);
+}
+
+TEST_F(FineTreeTest, PatchesAreNotToldOf) {
+  const SegmentTree tree = ToFine(TwoHalves(), coarse_, fine_);
+  const uint32_t count = fine_.NumFaces() / 2;
+  const SegmentTree own = WithoutPatches(tree, fine_, count);
+  ASSERT_EQ(own.nodes.size(), tree.nodes.size());
+  EXPECT_EQ(own.nodes[0].faces.size(), count);
+  for (const SegmentNode& node : own.nodes) {
+    EXPECT_LT(node.faces.back(), count);
+    EXPECT_FALSE(node.medial_structure.empty());
+    for (uint32_t v : node.medial_structure)
+      EXPECT_TRUE(std::ranges::any_of(node.faces, [&](uint32_t f) {
+        return std::ranges::count(fine_.faces[f], v) > 0;
+      }));
+  }
 }
 
 // What a segment loses to its neighbour may be all of its medial structure.

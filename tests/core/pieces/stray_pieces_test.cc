@@ -36,6 +36,19 @@ TEST(JoinStrayPiecesTest, AStrayBehindAStrayIsReachedToo) {
             Columns(mesh, {0, 0, 0, 1, 1, 1, 1, 1, 1}));
 }
 
+TEST(JoinPatchesTest, EveryLabelIsOfSomethingThatIsThere) {
+  const TriangleMesh mesh = Grid(6, 2);
+  std::vector<uint32_t> labels = Columns(mesh, {0, 0, 2, 3, 1, 1});
+  std::vector<bool> is_patch;
+  for (uint32_t label : labels) is_patch.push_back(label > 1);
+  JoinPatches(Adjacency(mesh), is_patch, labels);
+  EXPECT_EQ(labels, Columns(mesh, {0, 0, 0, 1, 1, 1}));
+  const std::vector<uint32_t> before = Columns(mesh, {0, 0, 2, 3, 1, 1});
+  labels = before;
+  JoinPatches(Adjacency(mesh), {}, labels);
+  EXPECT_EQ(labels, before);
+}
+
 TEST(JoinStrayPiecesTest, WhatIsInOnePieceStays) {
   const TriangleMesh mesh = Grid(6, 2);
   const std::vector<uint32_t> labels = Columns(mesh, {2, 2, 0, 0, 1, 1});
