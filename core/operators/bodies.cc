@@ -106,6 +106,16 @@ void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
   LargestFirst(scenery);
 }
 
+// Open is what has at most so many faces an edge of its rim.
+constexpr uint64_t kFacesOfRimEdge = 3;
+
+// Of rule 2. REQUIRES: largest first.
+bool AreShreds(const std::vector<Part>& parts, const MeshReport& report) {
+  return parts.size() >= kFewestShreds && parts[0].share < kMainShare &&
+         report.faces <= kFacesOfShred * report.components &&
+         kFacesOfRimEdge * report.boundary_edges >= report.faces;
+}
+
 // Rule 1. REQUIRES: largest first. The number of components of weight.
 size_t CountOfWeight(const std::vector<Part>& parts) {
   auto count_from = [&](double share) {
@@ -144,15 +154,20 @@ double BoxDiagonal(const TriangleMesh& mesh,
 // Rule 2: joins the parts that bridges within the distance connect.
 absl::StatusOr<std::vector<Part>> JoinNear(const TriangleMesh& mesh,
                                            std::vector<Part> parts,
+                                           bool are_shreds,
                                            const CancelToken& cancel,
                                            double& distance) {
   const Submesh main = ExtractFaces(mesh, AllFacesOf(parts), cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   distance = BridgingDistance(main.canonical.mesh);
-  double widest = 0;
-  for (const Part& part : parts)
-    widest = std::max(widest, BoxDiagonal(mesh, part.faces));
-  distance = std::min(distance, kBridgedGap * widest);
+  double widest = 0, sum = 0;
+  for (const Part& part : parts) {
+    const double breadth = BoxDiagonal(mesh, part.faces);
+    widest = std::max(widest, breadth);
+    sum += breadth / static_cast<double>(parts.size());
+  }
+  distance =
+      std::min(distance, are_shreds ? kShredGap * sum : kBridgedGap * widest);
   std::vector<uint32_t> part_of_vertex(mesh.NumVertices(), kNoIndex);
   for (uint32_t p = 0; p < parts.size(); ++p)
     for (uint32_t f : parts[p].faces)
@@ -242,15 +257,31 @@ void Sew(const std::vector<uint32_t>& sewn, const CancelToken& cancel,
   own.canonical.geometry_digest = GeometryDigestOf(mesh);
 }
 
+// Vertices that are sewn together to the mean of their places.
+void MoveToMeans(const std::vector<uint32_t>& sewn, Positions& positions) {
+  Positions sums = Positions::Zero(positions.rows(), 3);
+  std::vector<double> count(sewn.size(), 0);
+  for (uint32_t v = 0; v < sewn.size(); ++v) ++count[sewn[v]];
+  for (uint32_t v = 0; v < sewn.size(); ++v)
+    sums.row(sewn[v]) += positions.row(v) / count[sewn[v]];
+  for (uint32_t v = 0; v < sewn.size(); ++v)
+    if (count[v] > 1) positions.row(v) = sums.row(v);
+}
+
 absl::StatusOr<Body> MakeBody(const TriangleMesh& mesh, Part part,
-                              const CancelToken& cancel) {
+                              bool are_shreds, const CancelToken& cancel) {
   Submesh own = ExtractFaces(mesh, part.faces, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   Body body;
   if (part.components > 1) {
-    const TriangleMesh& shells = own.canonical.mesh;
-    const std::vector<uint32_t> sewn =
-        SewRims(shells, BridgingDistance(shells), cancel);
+    TriangleMesh& shells = own.canonical.mesh;
+    std::vector<uint32_t> sewn;
+    if (are_shreds) {
+      MARROW_ASSIGN_OR_RETURN(sewn, SewShreds(shells, cancel));
+      MoveToMeans(sewn, shells.positions);
+    } else {
+      sewn = SewRims(shells, BridgingDistance(shells), cancel);
+    }
     MARROW_RETURN_IF_ERROR(cancel.Check());
     Sew(sewn, cancel, own, body);
     MARROW_RETURN_IF_ERROR(cancel.Check());
@@ -347,11 +378,13 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   }
   std::vector<Part> parts, scenery;
   PartsOf(mesh.mesh, cancel, parts, scenery);
-  std::vector<Part> attached = Split(parts, CountOfWeight(parts));
+  const bool are_shreds = AreShreds(parts, mesh.report);
+  std::vector<Part> attached =
+      Split(parts, are_shreds ? parts.size() : CountOfWeight(parts));
   double distance = 0;
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  MARROW_ASSIGN_OR_RETURN(
-      parts, JoinNear(mesh.mesh, std::move(parts), cancel, distance));
+  MARROW_ASSIGN_OR_RETURN(parts, JoinNear(mesh.mesh, std::move(parts),
+                                          are_shreds, cancel, distance));
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
@@ -366,8 +399,8 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
     result.bodies.push_back(WholeBody(mesh, cancel));
   } else {
     for (Part& part : parts) {
-      MARROW_ASSIGN_OR_RETURN(Body body,
-                              MakeBody(mesh.mesh, std::move(part), cancel));
+      MARROW_ASSIGN_OR_RETURN(
+          Body body, MakeBody(mesh.mesh, std::move(part), are_shreds, cancel));
       result.bodies.push_back(std::move(body));
     }
     MARROW_RETURN_IF_ERROR(

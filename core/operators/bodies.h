@@ -15,6 +15,12 @@
 //     body has one operator, one spectrum and one tree: it is segmented as if
 //     its shells had grown together. Their rims are sewn where they face each
 //     other (core/operators/seams.h), and what stays apart is bridged.
+//     Shreds are kFewestShreds open components or more, of kFacesOfShred faces
+//     on average at most and none of kMainShare of the area: a surface whose
+//     faces, or scales, shrank or were moved apart. They are all of weight,
+//     however small, for a sieve conducts nothing; they are one body no farther
+//     apart than kShredGap of their mean breadth, as dust is no creature; and
+//     they are sewn as shreds.
 //  3. A body of at least kBodyShare of the largest is a segment of its own, a
 //     child of the root, if there are several; of the kMaxBodies largest.
 //  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
@@ -49,6 +55,10 @@ inline constexpr double kWeight = 1e-2;
 inline constexpr double kLightWeight = 1e-4;
 inline constexpr double kMainShare = 0.05;
 inline constexpr double kBridgedGap = 0.1;
+inline constexpr size_t kFewestShreds = 200;
+inline constexpr uint64_t kFacesOfShred = 32;
+// Triangles that shrank to .7 stand a quarter of their breadth apart.
+inline constexpr double kShredGap = 0.5;
 inline constexpr double kBodyShare = 0.05;
 inline constexpr uint32_t kMaxBodies = 128;
 // One face in a hundred missing changes next to nothing, one in ten a lot.

@@ -1,6 +1,9 @@
 #include "core/operators/seams.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
@@ -10,6 +13,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/rims.h"
 #include "core/mesh/unit_box.h"
+#include "core/mesh/vertex_cloud.h"
 #include "core/operators/body_tree.h"
 
 namespace marrow {
@@ -42,6 +46,10 @@ absl::StatusOr<std::vector<uint32_t>> NearestAcross(
   return across;
 }
 
+// More meet in no vertex of a surface; sets that grow without end would cost
+// the square of their size.
+constexpr size_t kMostShells = 256;
+
 // Sets of vertices of which no two are of one component: else a face could be
 // lost, or a component grow together with itself.
 class Seams {
@@ -54,7 +62,8 @@ class Seams {
     std::vector<uint32_t> joined = ComponentsOf(u);
     for (uint32_t c : ComponentsOf(v)) joined.push_back(c);
     std::sort(joined.begin(), joined.end());
-    if (std::adjacent_find(joined.begin(), joined.end()) != joined.end())
+    if (joined.size() > kMostShells ||
+        std::adjacent_find(joined.begin(), joined.end()) != joined.end())
       return;
     sets_.Union(u, v);
     components_[sets_.Find(u)] = std::move(joined);
@@ -73,7 +82,70 @@ class Seams {
   absl::flat_hash_map<uint32_t, std::vector<uint32_t>> components_;
 };
 
+// By distance, squared, then by the lesser vertex.
+using Near = std::tuple<double, uint32_t, uint32_t>;
+
+std::vector<double> ShortestEdges(const TriangleMesh& mesh,
+                                  const Positions& points) {
+  std::vector<double> shortest(mesh.NumVertices(),
+                               std::numeric_limits<double>::infinity());
+  for (const Triangle& face : mesh.faces)
+    for (int i = 0; i < 3; ++i) {
+      const uint32_t u = face[i], v = face[(i + 1) % 3];
+      const double length = (points.row(u) - points.row(v)).squaredNorm();
+      shortest[u] = std::min(shortest[u], length);
+      shortest[v] = std::min(shortest[v], length);
+    }
+  return shortest;
+}
+
+absl::StatusOr<std::vector<Near>> NearPairs(const TriangleMesh& mesh,
+                                            const std::vector<uint32_t>& rim,
+                                            const CancelToken& cancel) {
+  constexpr double kOfEdge = 0.5;
+  const Positions points = ToUnitBox(mesh).points;
+  const std::vector<double> shortest = ShortestEdges(mesh, points);
+  const VertexCloud cloud{points, rim};
+  const VertexTree tree(3, cloud);
+  std::vector<Near> pairs;
+  MARROW_RETURN_IF_ERROR(ForEachIndex(rim.size(), cancel, [&](size_t i) {
+    uint32_t nearest[kNearestShreds];
+    double distances[kNearestShreds];
+    const uint32_t u = rim[i];
+    const Eigen::Vector3d place = points.row(u).transpose();
+    const size_t found =
+        tree.knnSearch(place.data(), kNearestShreds, nearest, distances);
+    for (size_t k = 0; k < found; ++k) {
+      const uint32_t v = rim[nearest[k]];
+      if (u != v &&
+          distances[k] < kOfEdge * kOfEdge * std::min(shortest[u], shortest[v]))
+        pairs.push_back({distances[k], std::min(u, v), std::max(u, v)});
+    }
+  }));
+  MARROW_RETURN_IF_ERROR(
+      SortUnlessCancelled(pairs.begin(), pairs.end(), std::less<>(), cancel));
+  return pairs;
+}
+
 }  // namespace
+
+absl::StatusOr<std::vector<uint32_t>> SewShreds(const TriangleMesh& mesh,
+                                                const CancelToken& cancel) {
+  const Adjacency adjacency(mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const std::vector<uint32_t> rim = RimVertices(adjacency);
+  DisjointSets components(mesh.NumVertices());
+  JoinCorners(mesh, components);
+  const std::vector<uint32_t> component = components.Representatives();
+  Seams seams(component);
+  if (rim.empty()) return seams.Representatives();
+  MARROW_ASSIGN_OR_RETURN(const std::vector<Near> pairs,
+                          NearPairs(mesh, rim, cancel));
+  MARROW_RETURN_IF_ERROR(ForEachIndex(pairs.size(), cancel, [&](size_t i) {
+    seams.Sew(std::get<1>(pairs[i]), std::get<2>(pairs[i]));
+  }));
+  return seams.Representatives();
+}
 
 std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
                               const CancelToken& cancel) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -21,6 +22,14 @@ namespace marrow {
 // Of no use once cancelled.
 std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
                               const CancelToken& cancel = CancelToken());
+
+// The same for shreds, where the vertices of six or so make one: of the pairs
+// of vertices of rims that are nearer than half of the shortest edge at either,
+// the nearest first, by the kNearestShreds nearest ones of each. Errors:
+// CANCELLED.
+inline constexpr size_t kNearestShreds = 12;
+absl::StatusOr<std::vector<uint32_t>> SewShreds(const TriangleMesh& mesh,
+                                                const CancelToken& cancel);
 
 }  // namespace marrow
 

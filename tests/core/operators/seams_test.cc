@@ -88,6 +88,26 @@ TEST(SeamsTest, NoFaceIsLost) {
 }
 
 // The two rims of one tube are not sewn, nor is what has none.
+// Triangles that shrank to .7 of themselves: every vertex is found again.
+TEST(SeamsTest, ShredsBecomeOneSurface) {
+  const TriangleMesh ball = Icosphere(3);
+  TriangleMesh shreds;
+  shreds.positions.resize(3 * ball.NumFaces(), 3);
+  for (uint32_t f = 0; f < ball.NumFaces(); ++f) {
+    const auto& [a, b, c] = ball.faces[f];
+    const Eigen::Vector3d centre =
+        (ball.Position(a) + ball.Position(b) + ball.Position(c)) / 3;
+    for (uint32_t i = 0; i < 3; ++i)
+      shreds.positions.row(3 * f + i) =
+          (centre + 0.7 * (ball.Position(ball.faces[f][i]) - centre))
+              .transpose();
+    shreds.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+  }
+  const auto sewn = SewShreds(shreds, CancelToken());
+  ASSERT_TRUE(sewn.ok()) << sewn.status();
+  EXPECT_EQ(CountSewn(*sewn), shreds.NumVertices() - ball.NumVertices());
+}
+
 TEST(SeamsTest, OnlyRimsOfDifferentComponents) {
   EXPECT_EQ(CountSewn(SewRims(Tube(12, 2, 0, 0), 1)), 0u);
   EXPECT_EQ(CountSewn(SewRims(Both(Icosphere(1), Tube(12, 2, 1.05, 0)), 1)),

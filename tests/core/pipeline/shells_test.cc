@@ -462,5 +462,29 @@ TEST_P(ShellsTest, ASieveIsSegmentedAsTheSurface) {
   EXPECT_LE(DifferenceWithout(mesh, missing, Method::kMerge), 0.05);
 }
 
+// Every triangle by itself, at .7 of its size.
+TEST_P(ShellsTest, ShredsAreSegmentedAsTheSurface) {
+  const TriangleMesh mesh = MakeCreature(GetParam()).mesh;
+  TriangleMesh shreds;
+  shreds.positions.resize(3 * mesh.NumFaces(), 3);
+  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (uint32_t v : mesh.faces[f]) centre += mesh.Position(v) / 3;
+    for (uint32_t i = 0; i < 3; ++i)
+      shreds.positions.row(3 * f + i) =
+          (centre + 0.7 * (mesh.Position(mesh.faces[f][i]) - centre))
+              .transpose();
+    shreds.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
+  }
+  for (Method method : {Method::kPaper, Method::kMerge}) {
+    const RecordingSink expected = RunOn(mesh, Levels(1, method));
+    const RecordingSink run = RunOn(shreds, Levels(1, method));
+    EXPECT_EQ(run.mesh.report.bodies, 1u);
+    EXPECT_LE(RandIndexDifference(run.levels[0].face_labels,
+                                  expected.levels[0].face_labels),
+              0.08);
+  }
+}
+
 }  // namespace
 }  // namespace marrow
