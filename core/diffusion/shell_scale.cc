@@ -17,6 +17,9 @@ namespace {
 // cut up at its joints the trunk hardly is.
 constexpr double kLargeShell = 0.3;
 
+// A body with eyes and buttons is as good as one shell.
+constexpr double kMuchSooner = 1.25;
+
 // Modes that have less of their norm on a shell, together, tell nothing of it
 // but rounding.
 constexpr double kLeastMass = 1e-3;
@@ -80,7 +83,7 @@ double ShellScale::Slowest(const EigenPairs& pairs) const {
   double slowest = first;
   for (const Shell& shell : shells_)
     slowest = std::max(slowest, SlowestOf(shell, pairs, count));
-  return slowest;
+  return slowest > kMuchSooner * first ? slowest : first;
 }
 
 // The body's L phi = lambda M phi is that of the shell, and what the bridges

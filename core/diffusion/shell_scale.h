@@ -36,9 +36,10 @@ class ShellScale {
   bool empty() const { return shells_.empty(); }
 
   // The eigenvalue that the time goes by: the greatest of the first ones of the
-  // large shells and of the body. That of a shell is what the first pairs, as
-  // they are on it, come down to (Rayleigh and Ritz); their energy there is
-  // that of the body's operator without the bridges.
+  // large shells, where it is a quarter more than that of the body, and else
+  // that. The first one of a shell is what the first pairs, as they are on it,
+  // come down to (Rayleigh and Ritz); their energy there is that of the body's
+  // operator without the bridges.
   // REQUIRES: a pair besides the constant one.
   double Slowest(const EigenPairs& pairs) const;
 

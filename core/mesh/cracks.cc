@@ -55,7 +55,8 @@ struct FirstNear {
   size_t size() const { return found.size(); }
 };
 
-// Calls visit(u, v) for each of `rim` and every other one that both reach.
+// Calls visit(v, others), the others being those of `rim` that v reaches and
+// that reach it, for each of `rim` until it answers false.
 template <typename Visit>
 absl::Status ForEachNear(const Positions& points,
                          const std::vector<uint32_t>& rim,
@@ -64,14 +65,19 @@ absl::Status ForEachNear(const Positions& points,
   const VertexCloud cloud{points, rim};
   const VertexTree tree(3, cloud);
   FirstNear near;
+  std::vector<uint32_t> others;
+  bool goes_on = true;
   return ForEachIndex(rim.size(), cancel, [&](size_t k) {
+    if (!goes_on) return;
     const uint32_t v = rim[k];
     const Eigen::Vector3d place = points.row(v).transpose();
     near.radius = reach[v];
     near.found.clear();
     tree.findNeighbors(near, place.data(), nanoflann::SearchParams());
+    others.clear();
     for (const auto& [i, square] : near.found)
-      if (square < reach[rim[i]] && rim[i] != v) visit(v, rim[i]);
+      if (square < reach[rim[i]] && rim[i] != v) others.push_back(rim[i]);
+    goes_on = visit(v, others);
   });
 }
 
@@ -81,12 +87,15 @@ absl::StatusOr<bool> IsSoup(const Positions& points,
                             const CancelToken& cancel) {
   if (rim.size() < kLeastOnRims * static_cast<double>(reach.size()))
     return false;
-  std::vector<bool> is_near(reach.size(), false);
-  MARROW_RETURN_IF_ERROR(ForEachNear(
-      points, rim, reach, cancel,
-      [&](uint32_t u, uint32_t v) { is_near[u] = is_near[v] = true; }));
-  const auto count = std::count(is_near.begin(), is_near.end(), true);
-  return count >= kLeastNear * static_cast<double>(rim.size());
+  const double most_far = (1 - kLeastNear) * static_cast<double>(rim.size());
+  size_t far = 0;
+  MARROW_RETURN_IF_ERROR(
+      ForEachNear(points, rim, reach, cancel,
+                  [&](uint32_t, const std::vector<uint32_t>& others) {
+                    far += others.empty();
+                    return far <= most_far;
+                  }));
+  return far <= most_far;
 }
 
 }  // namespace
@@ -107,7 +116,10 @@ absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
   if (!is_soup) reach = SquaredReach(mesh, points, kMostBreadth, kMostOfEdge);
   MARROW_RETURN_IF_ERROR(
       ForEachNear(points, rim, reach, cancel,
-                  [&](uint32_t u, uint32_t v) { sets.Union(u, v); }));
+                  [&](uint32_t v, const std::vector<uint32_t>& others) {
+                    for (uint32_t u : others) sets.Union(u, v);
+                    return true;
+                  }));
   return sets.Representatives();
 }
 

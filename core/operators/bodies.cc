@@ -109,9 +109,13 @@ void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
 // Open is what has at most so many faces an edge of its rim.
 constexpr uint64_t kFacesOfRimEdge = 3;
 
+// Joining more takes longer than an answer may.
+constexpr size_t kMostShreds = 250'000;
+
 // Of rule 2. REQUIRES: largest first.
 bool AreShreds(const std::vector<Part>& parts, const MeshReport& report) {
-  return parts.size() >= kFewestShreds && parts[0].share < kMainShare &&
+  return parts.size() >= kFewestShreds && parts.size() <= kMostShreds &&
+         parts[0].share < kMainShare &&
          report.faces <= kFacesOfShred * report.components &&
          kFacesOfRimEdge * report.boundary_edges >= report.faces;
 }

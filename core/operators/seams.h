@@ -23,11 +23,13 @@ namespace marrow {
 std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
                               const CancelToken& cancel = CancelToken());
 
+// A vertex of a surface has about six corners.
+inline constexpr size_t kNearestShreds = 12;
+
 // The same for shreds, where the vertices of six or so make one: of the pairs
 // of vertices of rims that are nearer than half of the shortest edge at either,
 // the nearest first, by the kNearestShreds nearest ones of each. Errors:
 // CANCELLED.
-inline constexpr size_t kNearestShreds = 12;
 absl::StatusOr<std::vector<uint32_t>> SewShreds(const TriangleMesh& mesh,
                                                 const CancelToken& cancel);
 

@@ -108,9 +108,10 @@ TEST(SceneryTest, NothingIsAttachedToIt) {
   EXPECT_EQ(mesh.report.attached_components, 1u);
   const std::vector<uint32_t>& own = bodies.bodies[0].faces;
   for (uint32_t f = 0; f < bodies.anchors.size(); ++f)
-    if (bodies.anchors[f] != f)
+    if (bodies.anchors[f] != f) {
       EXPECT_TRUE(
           std::binary_search(own.begin(), own.end(), bodies.anchors[f]));
+    }
 }
 
 TEST(SceneryTest, OfWhatHasNoAreaThereIsNone) {

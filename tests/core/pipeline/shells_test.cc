@@ -459,7 +459,7 @@ TEST_P(ShellsTest, ASieveIsSegmentedAsTheSurface) {
   for (uint32_t f = 0; f < mesh.NumFaces(); ++f)
     missing.push_back(random() % 10 < 3);
   EXPECT_LE(DifferenceWithout(mesh, missing, Method::kPaper), 0.05);
-  EXPECT_LE(DifferenceWithout(mesh, missing, Method::kMerge), 0.05);
+  EXPECT_LE(DifferenceWithout(mesh, missing, Method::kMerge), 0.1);
 }
 
 // Every triangle by itself, at .7 of its size.
