@@ -54,7 +54,7 @@ ServiceContext::ServiceContext(const ServerOptions& server_options,
       spectra(engine.solver, options.cache_bytes),
       results(options.result_cache_bytes),
       pool(ComputeThreads(options), options.max_queued_jobs),
-      quick_pool(1, options.max_queued_jobs) {}
+      quick_pool(ComputeThreads(options), options.max_queued_jobs) {}
 
 CallRecord::CallRecord(ServiceContext& context,
                        grpc::CallbackServerContext& call, std::string method)

@@ -57,7 +57,7 @@ struct ServiceContext {
   // The threads go first, since what they run uses all above.
   Ticker ticker;
   ComputePool pool;
-  // For what takes milliseconds and should not wait for a solver.
+  // For what no solver is needed for, and should not wait for one.
   ComputePool quick_pool;
 };
 

@@ -23,7 +23,7 @@ struct JobPlan {
   std::string key;  // equal for requests that may share a job
   std::function<void(Job<Event>&)> open;
   std::function<void(Job<Event>&)> run;
-  bool quick = false;  // milliseconds: runs beside the long ones
+  bool quick = false;  // solves nothing: runs beside those that do
 };
 
 // A call that joined another's job ran no solver itself and says so.

@@ -1,5 +1,7 @@
 #include "client/command/result_folder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -161,7 +163,9 @@ absl::StatusOr<std::vector<std::string>> PrepareFolder(
   fs::path path(folder);
   if (!path.has_filename()) path = path.parent_path();  // it ends in a slash
   for (; path.has_relative_path(); path = path.parent_path()) {
-    if (!fs::exists(path, error)) made.push_back(path.string());
+    // A link that leads nowhere is somebody's.
+    if (fs::symlink_status(path, error).type() == fs::file_type::not_found)
+      made.push_back(path.string());
   }
   error.clear();
   fs::create_directories(folder, error);
@@ -178,8 +182,7 @@ absl::StatusOr<std::vector<std::string>> PrepareFolder(
 }
 
 void RemoveFolders(const std::vector<std::string>& folders) {
-  std::error_code ignored;
-  for (const std::string& folder : folders) fs::remove(folder, ignored);
+  for (const std::string& folder : folders) rmdir(folder.c_str());
 }
 
 bool IsResultName(const std::string& stem, const std::string& name,

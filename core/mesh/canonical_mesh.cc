@@ -377,15 +377,17 @@ absl::StatusOr<uint64_t> SplitEdges(const CanonicalMesh& mesh,
                           FindTJunctions(mesh.mesh, cancel));
   const std::vector<uint32_t> spot_of_vertex =
       SpotsOfVertices(mesh, vertex_of_spot);
-  uint64_t count = 0;
+  std::vector<bool> is_inside(mesh.mesh.NumVertices(), false);
   // Vertices are in the order of their spots.
   for (const auto& [edge, inside] : junctions) {
     auto& on_spots =
         spots.junctions[{spot_of_vertex[edge[0]], spot_of_vertex[edge[1]]}];
-    for (uint32_t v : inside) on_spots.push_back(spot_of_vertex[v]);
-    count += inside.size();
+    for (uint32_t v : inside) {
+      on_spots.push_back(spot_of_vertex[v]);
+      is_inside[v] = true;
+    }
   }
-  return count;
+  return std::count(is_inside.begin(), is_inside.end(), true);
 }
 
 // Assembles what has parts of faces. What is told of the payload's faces is

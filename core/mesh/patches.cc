@@ -221,12 +221,12 @@ class Patcher {
     MARROW_RETURN_IF_ERROR(
         ForEachIndex(adjacency_.NumEdges(), cancel, [&](uint32_t e) {
           if (!adjacency_.IsBoundaryEdge(e) || done[e]) return;
-          const Rim rim = RimFrom(gaps, e, done);
+          std::vector<uint32_t> edges;
+          const Rim rim = RimFrom(gaps, e, edges, done);
           if (rim.size() < 3) return;
           std::vector<Triangle> faces;
           const double area = filler.Fill(rim, faces);
-          if (area > kMostOfComponent * component_area_[component_[rim[0]]])
-            return;
+          if (area > kMostOfComponent * AreaAround(edges)) return;
           for (const Triangle& face : faces) patches.push_back(Canonical(face));
         }));
     MARROW_RETURN_IF_ERROR(SortUnlessCancelled(patches.begin(), patches.end(),
@@ -245,10 +245,18 @@ class Patcher {
     JoinCorners(mesh_, sets);
     component_ = sets.Representatives();
     component_area_.assign(mesh_.NumVertices(), 0);
+    DisjointSets pieces(mesh_.NumFaces());
+    for (uint32_t e = 0; e < adjacency_.NumEdges(); ++e)
+      for (uint32_t f : adjacency_.EdgeFaces(e))
+        pieces.Union(adjacency_.EdgeFaces(e)[0], f);
+    piece_ = pieces.Representatives();
+    piece_area_.assign(mesh_.NumFaces(), 0);
     double area = 0;
-    for (const Triangle& face : mesh_.faces) {
+    for (uint32_t f = 0; f < mesh_.NumFaces(); ++f) {
+      const Triangle& face = mesh_.faces[f];
       const double here = AreaVector(points_, face).norm();
       component_area_[component_[face[0]]] += here;
+      piece_area_[piece_[f]] += here;
       area += here;
     }
     double rims = 0, count = 0;
@@ -261,11 +269,22 @@ class Patcher {
                         count > 0 ? kLongestInEdges * rims / count : 0);
   }
 
+  // What a rim may be the outline of: the one piece whose edges it takes, such
+  // as a card that hangs on a creature by a vertex, or the component.
+  double AreaAround(const std::vector<uint32_t>& edges) const {
+    const uint32_t first = adjacency_.EdgeFaces(edges[0])[0];
+    const bool is_one = std::ranges::all_of(edges, [&](uint32_t e) {
+      return piece_[adjacency_.EdgeFaces(e)[0]] == piece_[first];
+    });
+    return is_one ? piece_area_[piece_[first]]
+                  : component_area_[component_[mesh_.faces[first][0]]];
+  }
+
   // Against the direction of the face at its first edge; empty where it is no
   // small hole.
-  Rim RimFrom(const Gaps& gaps, uint32_t first, std::vector<bool>& done) const {
+  Rim RimFrom(const Gaps& gaps, uint32_t first, std::vector<uint32_t>& edges,
+              std::vector<bool>& done) const {
     Rim rim;
-    std::vector<uint32_t> edges;
     double length = 0;
     uint32_t e = first, v = adjacency_.EdgeVertices(e)[0];
     do {
@@ -307,6 +326,8 @@ class Patcher {
   const Positions points_;
   std::vector<uint32_t> component_;     // of vertex
   std::vector<double> component_area_;  // by its least vertex
+  std::vector<uint32_t> piece_;         // of face, by edges
+  std::vector<double> piece_area_;      // by its least face
   double longest_ = 0;
 };
 

@@ -22,9 +22,9 @@ inline constexpr double kLongestInEdges = 8;
 // meet in a vertex, the gaps between them are told apart by their order around
 // it, so holes that touch in a vertex are holes of their own. What comes back
 // to its beginning without meeting a vertex twice is the rim of a hole, unless
-// its component is hardly larger than what would fill it: then it is an
-// outline. Of all ways to fill one, that of the least area which takes no edge
-// that is there already.
+// its component is hardly larger than what would fill it, or the piece, by
+// edges, that has all of it: then it is an outline. Of all ways to fill one,
+// that of the least area which takes no edge that is there already.
 //
 // Deterministic, O(n log n), thread safe. Errors: CANCELLED.
 absl::StatusOr<std::vector<Triangle>> PatchHoles(const TriangleMesh& mesh,

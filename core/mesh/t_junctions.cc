@@ -31,8 +31,7 @@ class InsideEdges {
     const Eigen::Vector3d middle = from + along / 2;
     const double square = along.squaredNorm();
     const double breadth = SquaredBreadth(from, along, face);
-    const size_t found = tree_.knnSearch(
-        middle.data(), std::min(kMostNearest, rim_.size()), nearest_, squares_);
+    const size_t found = FindNearest(middle, square / 4);
     inside_.clear();
     for (size_t i = 0; i < found && squares_[i] < square / 4; ++i) {
       const uint32_t v = rim_[nearest_[i]];
@@ -46,6 +45,17 @@ class InsideEdges {
   }
 
  private:
+  // How many are nearer than the square root of `most_square`; of those the
+  // nearest. The bound stands where the farthest will, so no more is searched
+  // than that takes.
+  size_t FindNearest(const Eigen::Vector3d& middle, double most_square) {
+    nanoflann::KNNResultSet<double, uint32_t> near(kMostNearest);
+    near.init(nearest_, squares_);
+    squares_[kMostNearest - 1] = most_square;
+    tree_.findNeighbors(near, middle.data(), nanoflann::SearchParams());
+    return near.size();
+  }
+
   // How far from the edge what is inside it may be.
   double SquaredBreadth(const Eigen::Vector3d& from,
                         const Eigen::Vector3d& along,

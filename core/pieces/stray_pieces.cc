@@ -135,6 +135,11 @@ void JoinPatches(const Adjacency& adjacency, const std::vector<bool>& is_patch,
         moved = true;
       }
   }
+  const auto least = std::ranges::find(is_there, true);
+  if (least == is_there.end()) return;
+  for (uint32_t& label : labels)
+    if (!is_there[label])
+      label = static_cast<uint32_t>(least - is_there.begin());
 }
 
 }  // namespace marrow

@@ -27,8 +27,8 @@ void JoinStrayPieces(const Adjacency& adjacency,
 
 // `is_patch`, by face: whether it fills a hole (core/mesh/patches.h); empty
 // where no face does. A label that only patches have becomes that of faces
-// beside it, so that every label left is of something that is there, if
-// anything is.
+// beside it, or where there are none the least that is left, so that every
+// label is of something that is there, if anything is.
 void JoinPatches(const Adjacency& adjacency, const std::vector<bool>& is_patch,
                  std::vector<uint32_t>& labels);
 

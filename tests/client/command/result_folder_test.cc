@@ -200,6 +200,14 @@ TEST(ResultFolderTest, MakesFoldersAndRefusesWhatCannotBeOne) {
   EXPECT_FALSE(PrepareFolder(folder / "file/z").ok());
 }
 
+TEST(ResultFolderTest, ALinkThatLeadsNowhereStays) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("nowhere", folder / "out");
+  EXPECT_FALSE(PrepareFolder(folder / "out").ok());
+  EXPECT_FALSE(PrepareFolder(folder / "out/x").ok());
+  EXPECT_THAT(ListFolder(folder.path()), ElementsAre("out"));
+}
+
 // The process ends while others of its threads write.
 TEST(StagingFolderTest, AProcessThatEndsLeavesNone) {
   const TemporaryFolder folder;

@@ -32,6 +32,17 @@ std::set<uint32_t> FacesOf(const TriangleMesh& mesh, uint32_t v) {
   return faces;
 }
 
+// A card on a creature has an outline of its own.
+TEST(PatchHolesTest, WhatHangsOnAVertexIsNotClosed) {
+  TriangleMesh mesh = Icosphere(2);
+  const uint32_t n = mesh.NumVertices();
+  mesh.positions.conservativeResize(n + 3, 3);
+  mesh.positions.bottomRows(3) << 2, 0, 0, 2, 0.1, 0, 2, 0.1, 0.1;
+  mesh.faces.push_back({0, n, n + 1});
+  mesh.faces.push_back({0, n + 1, n + 2});
+  EXPECT_TRUE(PatchesOf(CanonicalOf(mesh).mesh).empty());
+}
+
 TEST(PatchHolesTest, AFaceIsPutBackAsItWas) {
   const TriangleMesh mesh = CanonicalOf(Icosphere(2)).mesh;
   EXPECT_TRUE(PatchesOf(mesh).empty());

@@ -43,6 +43,11 @@ TEST(JoinPatchesTest, EveryLabelIsOfSomethingThatIsThere) {
   for (uint32_t label : labels) is_patch.push_back(label > 1);
   JoinPatches(Adjacency(mesh), is_patch, labels);
   EXPECT_EQ(labels, Columns(mesh, {0, 0, 0, 1, 1, 1}));
+  // Beside nothing that is there.
+  const TriangleMesh apart = Apart(Grid(1, 1), Grid(1, 1));
+  std::vector<uint32_t> alone = {1, 1, 0, 0};
+  JoinPatches(Adjacency(apart), {false, false, true, true}, alone);
+  EXPECT_EQ(alone, std::vector<uint32_t>(4, 1));
   const std::vector<uint32_t> before = Columns(mesh, {0, 0, 2, 3, 1, 1});
   labels = before;
   JoinPatches(Adjacency(mesh), {}, labels);
