@@ -17,9 +17,18 @@ namespace {
 constexpr double kMostBreadth = 1e-5;
 constexpr double kMostOfEdge = 0.1;
 constexpr double kMostOfEdgeInSoup = 0.05;
-// Of the vertices of a soup, and of those on rims.
-constexpr double kLeastOnRims = 0.5;
+// Of the sides of a soup's faces. The pages of a book, which are near to each
+// other as well, have half of theirs on rims.
+constexpr double kLeastOnRims = 0.75;
+// Of the vertices on rims.
 constexpr double kLeastNear = 0.9;
+
+bool AreMostlyRims(const Adjacency& adjacency) {
+  size_t rims = 0;
+  for (uint32_t e = 0; e < adjacency.NumEdges(); ++e)
+    rims += adjacency.IsBoundaryEdge(e);
+  return rims >= kLeastOnRims * 3 * adjacency.NumFaces();
+}
 
 // How far from each vertex others are one with it, squared.
 std::vector<double> SquaredReach(const TriangleMesh& mesh,
@@ -81,12 +90,11 @@ absl::Status ForEachNear(const Positions& points,
   });
 }
 
-absl::StatusOr<bool> IsSoup(const Positions& points,
+absl::StatusOr<bool> IsSoup(const Adjacency& adjacency, const Positions& points,
                             const std::vector<uint32_t>& rim,
                             const std::vector<double>& reach,
                             const CancelToken& cancel) {
-  if (rim.size() < kLeastOnRims * static_cast<double>(reach.size()))
-    return false;
+  if (!AreMostlyRims(adjacency)) return false;
   const double most_far = (1 - kLeastNear) * static_cast<double>(rim.size());
   size_t far = 0;
   MARROW_RETURN_IF_ERROR(
@@ -112,7 +120,7 @@ absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
       mesh, points, std::numeric_limits<double>::infinity(), kMostOfEdgeInSoup);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   MARROW_ASSIGN_OR_RETURN(const bool is_soup,
-                          IsSoup(points, rim, reach, cancel));
+                          IsSoup(adjacency, points, rim, reach, cancel));
   if (!is_soup) reach = SquaredReach(mesh, points, kMostBreadth, kMostOfEdge);
   MARROW_RETURN_IF_ERROR(
       ForEachNear(points, rim, reach, cancel,

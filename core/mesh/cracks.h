@@ -16,9 +16,10 @@ namespace marrow {
 // 1e-5 of the longest side of the box and than a tenth of the shortest edge at
 // either: what programs leave that write corners apart, and round them.
 //
-// A soup is a mesh most of whose vertices are of rims and nearly all of these
-// near to another, within a twentieth of the shortest edge at either: what is
-// left open of one would leave a sieve, so in a soup all of that is one.
+// A soup is a mesh whose faces have three of four sides on rims, and nearly all
+// of whose vertices there are near to another, within a twentieth of the
+// shortest edge at either: what is left open of one would leave a sieve, so in
+// a soup all of that is one.
 //
 // Deterministic, O(n log n), thread safe. Errors: CANCELLED.
 absl::StatusOr<std::vector<uint32_t>> FindCracks(const TriangleMesh& mesh,
