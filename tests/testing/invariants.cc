@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "core/mesh/patches.h"
+#include "core/mesh/canonical_mesh.h"
 #include "core/operators/bodies.h"
 #include "gtest/gtest.h"
 
@@ -34,13 +34,27 @@ void ExpectSoundNode(const TriangleMesh& mesh, const SegmentNode& node) {
   EXPECT_TRUE((node.centroid.array() <= high.array() + slack).all());
 }
 
-// The mesh, with its holes patched where one of its bodies may be a sieve.
-TriangleMesh WithPatches(TriangleMesh mesh) {
-  const std::vector<Triangle> patches = PatchHoles(mesh, CancelToken()).value();
-  if (static_cast<double>(patches.size()) >=
-      kBodyShare * kSievePatches * mesh.NumFaces())
-    mesh.faces.insert(mesh.faces.end(), patches.begin(), patches.end());
-  return mesh;
+// The mesh as its bodies are computed on: with the patches of those that are
+// sieves behind its faces, and what they had sewn as one. Itself where none is.
+TriangleMesh WithPatches(const TriangleMesh& mesh) {
+  CanonicalMesh canonical;
+  canonical.mesh = mesh;
+  canonical.report = ReportOn(mesh);
+  TriangleMesh result = mesh;
+  for (const Body& body : FindBodies(canonical, CancelToken()).bodies) {
+    if (body.patched == nullptr) continue;
+    std::map<uint32_t, uint32_t> sewn;
+    for (const auto& [one, other] : body.seams) sewn[other] = one;
+    for (Triangle& face : result.faces)
+      for (uint32_t& v : face)
+        if (const auto at = sewn.find(v); at != sewn.end()) v = at->second;
+    const std::vector<Triangle>& faces = body.patched->mesh.faces;
+    for (size_t f = body.faces.size(); f < faces.size(); ++f)
+      result.faces.push_back({body.vertices[faces[f][0]],
+                              body.vertices[faces[f][1]],
+                              body.vertices[faces[f][2]]});
+  }
+  return result;
 }
 
 // `in_order`: siblings are ordered by all of their area, for nothing else is
