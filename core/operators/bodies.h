@@ -15,9 +15,10 @@
 //     body has one operator, one spectrum and one tree: it is segmented as if
 //     its shells had grown together. Their rims are sewn where they face each
 //     other (core/operators/seams.h), and what stays apart is bridged.
-//     Shreds are kFewestShreds open components or more, of kFacesOfShred faces
-//     on average at most and none of kMainShare of the area: a surface whose
-//     faces, or scales, shrank or were moved apart. They are all of weight,
+//     Shreds are kFewestShreds components or more, up to 250,000, with a rim
+//     edge for every three faces at least, of kFacesOfShred faces on average at
+//     most and none of kMainShare of the area: a surface whose faces, or
+//     scales, shrank or were moved apart. They are all of weight,
 //     however small, for a sieve conducts nothing; they are one body no farther
 //     apart than kShredGap of their mean breadth, as dust is no creature; and
 //     they are sewn as shreds.

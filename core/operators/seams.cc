@@ -99,6 +99,12 @@ std::vector<double> ShortestEdges(const TriangleMesh& mesh,
   return shortest;
 }
 
+std::vector<uint32_t> ComponentOfVertices(const TriangleMesh& mesh) {
+  DisjointSets components(mesh.NumVertices());
+  JoinCorners(mesh, components);
+  return components.Representatives();
+}
+
 absl::StatusOr<std::vector<Near>> NearPairs(const TriangleMesh& mesh,
                                             const std::vector<uint32_t>& rim,
                                             const CancelToken& cancel) {
@@ -134,9 +140,7 @@ absl::StatusOr<std::vector<uint32_t>> SewShreds(const TriangleMesh& mesh,
   const Adjacency adjacency(mesh, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const std::vector<uint32_t> rim = RimVertices(adjacency);
-  DisjointSets components(mesh.NumVertices());
-  JoinCorners(mesh, components);
-  const std::vector<uint32_t> component = components.Representatives();
+  const std::vector<uint32_t> component = ComponentOfVertices(mesh);
   Seams seams(component);
   if (rim.empty()) return seams.Representatives();
   MARROW_ASSIGN_OR_RETURN(const std::vector<Near> pairs,
@@ -152,9 +156,7 @@ std::vector<uint32_t> SewRims(const TriangleMesh& mesh, double longest,
   const Adjacency adjacency(mesh, cancel);
   if (cancel.IsCancelled()) return {};
   const std::vector<uint32_t> rim = RimVertices(adjacency);
-  DisjointSets components(mesh.NumVertices());
-  JoinCorners(mesh, components);
-  const std::vector<uint32_t> component = components.Representatives();
+  const std::vector<uint32_t> component = ComponentOfVertices(mesh);
   Seams seams(component);
   if (rim.empty()) return seams.Representatives();
   const absl::StatusOr<std::vector<uint32_t>> nearest =
