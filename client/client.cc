@@ -72,7 +72,8 @@ absl::StatusOr<std::unique_ptr<Client>> Client::Connect(
   if (!channel->WaitForConnected(absl::ToChronoTime(absl::Now() + patience))) {
     return absl::UnavailableError(absl::StrCat(
         "cannot reach a server at ", address, " (waited ",
-        absl::FormatDuration(patience),
+        absl::FormatDuration(absl::Trunc(patience + absl::Milliseconds(50),
+                                         absl::Milliseconds(100))),
         "): start marrowd there, correct --server or MARROW_SERVER, or leave "
         "both out to compute in this process"));
   }

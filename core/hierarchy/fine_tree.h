@@ -23,7 +23,7 @@ std::vector<uint32_t> ToFine(const std::vector<uint32_t>& vertices,
                              const CoarseMesh& coarse, const TriangleMesh& fine,
                              const std::vector<uint32_t>& faces);
 
-// Nodes have the patches of their coarse faces, and the medial structures that
+// Nodes have the clusters of their coarse faces, and the medial structures that
 // they had. Their areas and centroids are those of the coarse faces, so
 // siblings are in the order of these. Thread safe.
 SegmentTree ToFine(const SegmentTree& tree, const CoarseMesh& coarse,

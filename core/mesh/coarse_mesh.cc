@@ -293,7 +293,7 @@ class Coarsener {
                                     SquaredLength(c, a)});
   }
 
-  // A face that goes joins the patch of its neighbour across an edge of u's:
+  // A face that goes joins the cluster of its neighbour across an edge of u's:
   // that one comes to be where both were.
   void Collapse(uint32_t u, uint32_t v, const Ring& ring) {
     for (uint32_t f : Star(u)) {

@@ -16,8 +16,8 @@ struct CoarseMesh {
   // As in Submesh: in canonical order, turned as the fine one, with a digest.
   CanonicalMesh canonical;
   std::vector<uint32_t> vertices;  // coarse vertex -> that fine one, ascending
-  std::vector<uint32_t> faces;     // coarse face -> a fine face of its patch
-  // Fine face -> the coarse face whose patch it is of.
+  std::vector<uint32_t> faces;     // coarse face -> a fine face of its cluster
+  // Fine face -> the coarse face whose cluster it is of.
   std::vector<uint32_t> coarse_face;
 };
 
@@ -30,8 +30,8 @@ struct CoarseMesh {
 // Nekhayev 1999); boundaries stay boundaries, and vertices where the mesh is no
 // manifold stay. No collapse turns a face by more than 60 degrees or makes it a
 // sliver, unless too many vertices are left by that; then more is allowed. The
-// patches of fine faces partition the fine mesh, each is connected across
-// edges, and two coarse faces that share an edge have patches that do: so what
+// clusters of fine faces partition the fine mesh, each is connected across
+// edges, and two coarse faces that share an edge have clusters that do: so what
 // is connected on the coarse mesh is connected on the fine one.
 //
 // A mesh that is moved, turned, mirrored or scaled has the same coarse mesh,

@@ -335,6 +335,7 @@ TEST(MarrowTest, ATimeoutBoundsTheWaitForAServer) {
   const Finished run = Marrow({"inspect", folder / "t.off", "--server",
                                "127.0.0.1:1", "--timeout", "0.5"});
   EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, ::testing::ContainsRegex("waited [1-5]00ms"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));
 }
 
