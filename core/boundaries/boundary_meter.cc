@@ -25,6 +25,20 @@ constexpr double kLeastShare = 1e-12;
 constexpr double kLeastGrowth = 0.05;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
+double LogOdds(double p) { return std::log(p / (1 - p)); }
+
+// Grows with `strength`, on the same side of kAutomaticSalience.
+double Ranked(double strength, double apart) {
+  if (strength <= kAutomaticSalience) return strength;
+  const double automatic = LogOdds(kAutomaticSalience);
+  const double beyond = LogOdds(strength) - automatic;
+  const double first =
+      beyond + std::min((kFirstSplitGain - 1) * beyond, kFirstSplitLead);
+  const double share =
+      std::clamp((apart - kTogether) / (kApart - kTogether), 0.0, 1.0);
+  return Logistic(automatic + share * first +
+                  (1 - share) * kLaterSplitGain * beyond);
+}
 
 }  // namespace
 
@@ -55,7 +69,8 @@ double BoundaryMeter::StrengthBetween(const PieceGraph& graph,
     return AsPart(std::min(graph.AreaOfShells(groups.first),
                            graph.AreaOfShells(groups.second)),
                   kShellShare);
-  return Strength(MeasureBoundary(graph, groups)) *
+  return Ranked(Strength(MeasureBoundary(graph, groups)),
+                graph.ApartInFirstSplit(groups)) *
          AsPart(std::min(graph.Area(groups.first), graph.Area(groups.second)),
                 kSpeckShare);
 }

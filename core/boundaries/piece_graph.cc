@@ -59,6 +59,25 @@ void PieceGraph::FindShells(const Adjacency& adjacency,
   }
 }
 
+void PieceGraph::SetFirstSplit(const std::vector<uint32_t>& segment_of_face,
+                               const std::vector<double>& face_areas) {
+  split_areas_.resize(areas_.size());
+  for (uint32_t f = 0; f < segment_of_face.size(); ++f)
+    split_areas_[group_of_face_[f]][segment_of_face[f]] += face_areas[f];
+}
+
+double PieceGraph::ApartInFirstSplit(const Pair& groups) const {
+  const auto [a, b] = groups;
+  if (split_areas_.empty() || !(areas_[a] > 0 && areas_[b] > 0)) return 0;
+  double together = 0;
+  for (const auto& [segment, area] : split_areas_[a]) {
+    const auto other = split_areas_[b].find(segment);
+    if (other != split_areas_[b].end())
+      together += std::min(area / areas_[a], other->second / areas_[b]);
+  }
+  return std::max(0.0, 1 - together);
+}
+
 double PieceGraph::AreaOfShells(uint32_t group) const {
   return shells_.empty() ? areas_[group] : areas_of_shells_[group];
 }
@@ -82,6 +101,9 @@ void PieceGraph::Merge(uint32_t a, uint32_t b) {
         areas_of_shells_[a] += shell_areas_[shell];
     shells_[b] = {};
   }
+  if (!split_areas_.empty())
+    for (const auto& [segment, area] : std::exchange(split_areas_[b], {}))
+      split_areas_[a][segment] += area;
   MergeBoundaries(a, b);
 }
 

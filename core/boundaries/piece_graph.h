@@ -33,12 +33,22 @@ class PieceGraph {
              const std::vector<double>& face_areas,
              const FaceLinks& links = {});
 
+  // `segment_of_face` are the segments that the body was split into first. To
+  // be called before any merge.
+  void SetFirstSplit(const std::vector<uint32_t>& segment_of_face,
+                     const std::vector<double>& face_areas);
+
   uint32_t NumPieces() const { return static_cast<uint32_t>(areas_.size()); }
   // Face -> its group.
   const std::vector<uint32_t>& group_of_face() const { return group_of_face_; }
   double Area(uint32_t group) const { return areas_[group]; }
   // That of all shells of which the group has faces: what edges connect.
   double AreaOfShells(uint32_t group) const;
+  // How much of two groups is in different segments of the first split, 0 to 1:
+  // 1 - sum over the segments of the lesser of their shares of either group. A
+  // boundary of the two need not be one of the segments to be between them, as
+  // boundaries move. 0 without a first split.
+  double ApartInFirstSplit(const Pair& groups) const;
   const std::map<Pair, Boundary>& boundaries() const { return boundaries_; }
 
   // Those that have a boundary with the group.
@@ -66,6 +76,8 @@ class PieceGraph {
   std::vector<std::set<uint32_t>> shells_;
   std::vector<double> shell_areas_;
   std::vector<double> areas_of_shells_;  // of each group
+  // Of each group, in each segment of the first split.
+  std::vector<std::map<uint32_t, double>> split_areas_;
   std::map<Pair, Boundary> boundaries_;
   std::vector<std::set<uint32_t>> neighbours_;
 };

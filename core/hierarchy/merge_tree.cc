@@ -33,8 +33,9 @@ constexpr double kPairsShare = 0.5;
 
 // The leaves of the paper's tree.
 struct Pieces {
-  std::vector<uint32_t> of_face;  // numbered from 0
-  StopReason stop_reason;         // of the whole body
+  std::vector<uint32_t> of_face;      // numbered from 0
+  std::vector<uint32_t> first_split;  // face -> segment of the first level
+  StopReason stop_reason;             // of the whole body
 };
 
 absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
@@ -67,7 +68,8 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
   for (uint32_t& p : piece)
     p = static_cast<uint32_t>(
         std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());
-  return Pieces{std::move(piece), builder.tree().nodes[0].stop_reason};
+  return Pieces{std::move(piece), builder.tree().FaceSegments(1),
+                builder.tree().nodes[0].stop_reason};
 }
 
 // Fronts cross from shell to shell; where one ends there must be a boundary, or
@@ -163,11 +165,11 @@ absl::StatusOr<MergeTree> BuildMergeTree(
     JoinPatches(context.adjacency, context.is_patch, result.piece_of_face);
     NumberByArea(surface.areas, result.piece_of_face);
   }
-  MARROW_ASSIGN_OR_RETURN(
-      result.order,
-      MergePieces(PieceGraph(context.adjacency, result.piece_of_face,
-                             surface.areas, context.links),
-                  meter, cancel));
+  PieceGraph graph(context.adjacency, result.piece_of_face, surface.areas,
+                   context.links);
+  graph.SetFirstSplit(pieces.first_split, surface.areas);
+  MARROW_ASSIGN_OR_RETURN(result.order,
+                          MergePieces(std::move(graph), meter, cancel));
   const size_t count = std::min<size_t>(levels, std::size(kLevelSalience));
   MARROW_ASSIGN_OR_RETURN(
       result.tree,

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/boundaries/calibration.h"
 #include "core/operators/laplacian.h"
 #include "gtest/gtest.h"
 #include "tests/testing/shapes.h"
@@ -11,18 +12,25 @@
 namespace marrow {
 namespace {
 
+// For each face whether it is left, 0, or right, 1, of a plane across x.
+std::vector<uint32_t> SidesOf(const TriangleMesh& mesh, double x) {
+  std::vector<uint32_t> side;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const double middle =
+        (mesh.Position(a) + mesh.Position(b) + mesh.Position(c)).x() / 3;
+    side.push_back(middle > x);
+  }
+  return side;
+}
+
 // The boundary between the faces left and right of a plane across x.
 Measures CutAcross(const TriangleMesh& mesh, double x, bool swapped = false) {
   const Adjacency adjacency(mesh);
   const std::vector<double> areas = FaceAreaShares(mesh);
   const Curvature curvature =
       Curvature::Measure(mesh, adjacency, CancelToken()).value();
-  std::vector<uint32_t> side;
-  for (const auto& [a, b, c] : mesh.faces) {
-    const double middle =
-        (mesh.Position(a) + mesh.Position(b) + mesh.Position(c)).x() / 3;
-    side.push_back((middle > x) != swapped);
-  }
+  std::vector<uint32_t> side = SidesOf(mesh, x);
+  for (uint32_t& s : side) s ^= swapped;
   BoundaryMeter meter(mesh, adjacency, areas, curvature);
   return meter.MeasureBoundary(PieceGraph(adjacency, side, areas), {0, 1});
 }
@@ -98,6 +106,36 @@ TEST(BoundaryMeterTest, EveryMeasureIsFiniteOnAnyShape) {
       EXPECT_LE(Strength(measures), 1);
     }
   }
+}
+
+// The strength of that boundary where the first split is across `first`.
+double RankedAcross(const TriangleMesh& mesh, double x, double first) {
+  const Adjacency adjacency(mesh);
+  const std::vector<double> areas = FaceAreaShares(mesh);
+  const Curvature curvature =
+      Curvature::Measure(mesh, adjacency, CancelToken()).value();
+  PieceGraph graph(adjacency, SidesOf(mesh, x), areas);
+  graph.SetFirstSplit(SidesOf(mesh, first), areas);
+  return BoundaryMeter(mesh, adjacency, areas, curvature)
+      .StrengthBetween(graph, {0, 1});
+}
+
+TEST(BoundaryMeterTest, TheFirstSplitRanksWhatTheAutomaticCutKeeps) {
+  const TriangleMesh mesh = Dumbbell(1, 48);
+  const double strong = Strength(CutAcross(mesh, 0.52));
+  ASSERT_GT(strong, kAutomaticSalience);
+  const double along = RankedAcross(mesh, 0.52, 0.52);
+  const double near = RankedAcross(mesh, 0.52, 0.3);
+  const double within = RankedAcross(mesh, 0.52, -9);
+  EXPECT_LT(along, 1);
+  EXPECT_GT(along, strong);
+  EXPECT_GT(near, strong);
+  EXPECT_LE(near, along);
+  EXPECT_LT(within, strong);
+  EXPECT_GT(within, kAutomaticSalience);
+  const double weak = Strength(CutAcross(mesh, 1.5));
+  ASSERT_LT(weak, kAutomaticSalience);
+  EXPECT_NEAR(RankedAcross(mesh, 1.5, 1.5), weak, 1e-6);
 }
 
 TEST(StrengthTest, IsHalfWhereTheWeightsSayNothing) {

@@ -87,6 +87,28 @@ TEST(PieceGraphTest, MergingGivesWhatIsSeenFromTheFaces) {
   EXPECT_NEAR(graph.Area(0), 1, 1e-12);
 }
 
+// Six pieces of equal area, of which the first three are one segment of the
+// first split, and half of the fourth.
+TEST(PieceGraphTest, GroupsAreApartByWhatSegmentsTheyAreOf) {
+  const TriangleMesh mesh = Grid(6, 2);
+  const Adjacency adjacency(mesh);
+  const std::vector<uint32_t> piece = PiecesByX(mesh, 1);
+  std::vector<uint32_t> segment;
+  for (uint32_t f = 0; f < piece.size(); ++f)
+    segment.push_back(piece[f] < 3 || (piece[f] == 3 && f % 2 == 0));
+  const std::vector<double> areas = FaceAreaShares(mesh);
+  PieceGraph graph(adjacency, piece, areas);
+  EXPECT_EQ(graph.ApartInFirstSplit({0, 5}), 0);
+  graph.SetFirstSplit(segment, areas);
+  EXPECT_NEAR(graph.ApartInFirstSplit({0, 1}), 0, 1e-12);
+  EXPECT_NEAR(graph.ApartInFirstSplit({2, 3}), 0.5, 1e-12);
+  EXPECT_NEAR(graph.ApartInFirstSplit({4, 5}), 0, 1e-12);
+  EXPECT_NEAR(graph.ApartInFirstSplit({0, 5}), 1, 1e-12);
+  graph.Merge(3, 4);
+  EXPECT_NEAR(graph.ApartInFirstSplit({2, 3}), 0.75, 1e-12);
+  EXPECT_NEAR(graph.ApartInFirstSplit({3, 5}), 0.25, 1e-12);
+}
+
 TEST(PieceGraphTest, LinksAreBoundariesToo) {
   const TriangleMesh mesh = Apart(Icosphere(1), Icosphere(1));
   const Adjacency adjacency(mesh);
