@@ -8,12 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status_macros.h"
 #include "core/operators/laplacian.h"
 #include "core/spectrum/dense_solver.h"
 #include "core/spectrum/reference_solver.h"
+#include "core/spectrum/separate_bands.h"
 #include "core/spectrum/slicing.h"
 #include "core/spectrum/team.h"
 
@@ -22,6 +24,9 @@ namespace {
 
 // The reference solver is no way out above this size: it would take hours.
 constexpr int kReferenceVertices = 200'000;
+// Of the tolerance: pairs of smaller residuals overlap with those of other
+// bands by next to nothing.
+constexpr double kLooseShare = 1.0 / 16;
 // What the analysis is of the whole.
 constexpr double kAnalysisShare = 0.1;
 
@@ -76,10 +81,12 @@ void Finish(Eigen::Index first, Eigen::VectorXd& values,
 }
 
 // Appends the parts, in the mesh's order and scaled, but for what is beyond
-// `most` pairs. Empties the parts as it goes.
+// `most` pairs, with their residuals. Empties the parts as it goes.
 void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
-            const Eigen::VectorXd& scale, Eigen::Index most,
-            Eigen::VectorXd& values, EigenvectorMatrix& vectors) {
+            const Eigen::VectorXd& scale, Eigen::Index most, double tolerance,
+            Eigen::VectorXd& values, EigenvectorMatrix& vectors,
+            std::vector<double>& residuals) {
+  const Eigen::VectorXd mass = scale.cwiseAbs2().cwiseInverse();
   Eigen::Index column = values.size(), count = column;
   for (const SpectrumPart& part : parts) count += part.end - part.first;
   count = std::min(count, most);
@@ -91,6 +98,8 @@ void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
         std::min<Eigen::Index>(part.end - part.first, count - column));
     for (int k = 0; k < width; ++k)
       values[column + k] = part.band.values[part.first + k];
+    const auto first = part.band.residuals.begin() + part.first;
+    residuals.insert(residuals.end(), first, first + width);
     const float* rows = part.band.vectors.data();
     for (Eigen::Index i = 0; i < scale.size(); ++i) {
       const float* row = rows + i * stride + part.first;
@@ -99,6 +108,8 @@ void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
         vectors(v, column + k) = static_cast<float>(row[k] * scale[v]);
     }
     part.band = {};
+    if (column == 0) vectors.col(0).setOnes();
+    SeparateBands(mass, residuals, kLooseShare * tolerance, column, vectors);
     column += width;
   }
 }
@@ -200,7 +211,8 @@ class SolverStream : public EigenPairStream {
       for (const SpectrumPart& part : *parts)
         pairs.for_any_count &= !part.of_cluster;
       Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,
-             most_, pairs.eigenvalues, pairs.eigenvectors);
+             most_, tolerance_, pairs.eigenvalues, pairs.eigenvectors,
+             residuals_);
     }
     return absl::OkStatus();
   }
@@ -238,6 +250,7 @@ class SolverStream : public EigenPairStream {
   SymmetricProblem problem_;
   std::unique_ptr<SpectrumSlicer> slicer_;
   std::shared_ptr<const EigenPairs> pairs_;
+  std::vector<double> residuals_;  // of pairs_ that were sliced
 };
 
 }  // namespace
