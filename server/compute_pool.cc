@@ -8,6 +8,12 @@
 #include "core/base/error_reason.h"
 
 namespace marrow {
+namespace {
+
+// The pool whose task this thread runs, until it counts as idle.
+thread_local ComputePool* busy_for = nullptr;
+
+}  // namespace
 
 ComputePool::ComputePool(int threads, int max_queued)
     : max_queued_(static_cast<size_t>(max_queued)),
@@ -70,11 +76,18 @@ void ComputePool::Work() {
       queue_.pop_front();
       --idle_;
     }
+    busy_for = this;
     task.run();
     task = Task();  // what it holds goes before the thread counts as idle
-    absl::MutexLock lock(&mu_);
-    ++idle_;
+    CountAsIdle();
   }
+}
+
+void ComputePool::CountAsIdle() {
+  ComputePool* pool = std::exchange(busy_for, nullptr);
+  if (pool == nullptr) return;
+  absl::MutexLock lock(&pool->mu_);
+  ++pool->idle_;
 }
 
 }  // namespace marrow

@@ -33,6 +33,11 @@ class ComputePool {
   absl::Status Submit(std::shared_ptr<const CancelToken> cancel,
                       std::function<void()> run);
 
+  // For a task that is about to give its answer away: its thread counts as idle
+  // from here on, so that who has the answer is not refused for it. Nothing on
+  // a thread of no pool.
+  static void CountAsIdle();
+
  private:
   struct Task {
     std::shared_ptr<const CancelToken> cancel;

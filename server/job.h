@@ -21,6 +21,7 @@
 #include "absl/synchronization/mutex.h"
 #include "core/base/cancel_token.h"
 #include "marrow/v1/mesh.pb.h"
+#include "server/compute_pool.h"
 #include "server/ticker.h"
 
 namespace marrow {
@@ -86,6 +87,7 @@ class Job : public Tickable {
 
   // Appends `last` and ends the job with OK, with nothing in between.
   void Complete(Event last) {
+    ComputePool::CountAsIdle();
     {
       absl::MutexLock lock(&mu_);
       AppendLocked(std::move(last));
@@ -97,6 +99,7 @@ class Job : public Tickable {
   // Ends the job with `count` events that `make` (index from 0) makes anew for
   // every reader, for what is too big to be kept. `make` must be thread safe.
   void CompleteLazily(uint64_t count, std::function<Event(uint64_t)> make) {
+    ComputePool::CountAsIdle();
     {
       absl::MutexLock lock(&mu_);
       lazy_count_ = count;
@@ -108,6 +111,7 @@ class Job : public Tickable {
 
   // Ends the job with an error, unless it has ended.
   void Fail(absl::Status error) {
+    ComputePool::CountAsIdle();
     {
       absl::MutexLock lock(&mu_);
       if (end_.has_value()) return;

@@ -141,6 +141,7 @@ grpc::ServerUnaryReactor* MeshStoreService::InspectMesh(
           if (result.ok()) found = *std::move(result);
           return result.status();
         });
+        ComputePool::CountAsIdle();
         if (status.ok()) {
           state->Finish(std::move(found));
         } else {

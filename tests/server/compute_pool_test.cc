@@ -68,5 +68,22 @@ TEST(ComputePoolTest, WithoutAQueueIdleThreadsStillTakeTasks) {
   done.WaitForNotification();
 }
 
+TEST(ComputePoolTest, WhoHasAnAnswerIsNotRefusedForIt) {
+  absl::Notification answered, taken;
+  ComputePool pool(1, 0);
+  EXPECT_TRUE(pool.Submit(Token(),
+                          [&] {
+                            ComputePool::CountAsIdle();
+                            answered.Notify();
+                            taken.WaitForNotification();
+                          })
+                  .ok());
+  answered.WaitForNotification();
+  EXPECT_TRUE(pool.Submit(Token(), [] {}).ok());
+  EXPECT_EQ(pool.Submit(Token(), [] {}).code(), absl::StatusCode::kUnavailable);
+  taken.Notify();
+  ComputePool::CountAsIdle();  // a thread of no pool
+}
+
 }  // namespace
 }  // namespace marrow
