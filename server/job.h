@@ -38,7 +38,7 @@ class JobListener {
 //
 // Invariants: sequences in the log run from 1 without gaps; nothing is
 // appended once `end_` is set; a job that is cancelled or ended takes no
-// listeners.
+// listeners; whoever reads the end finds its compute thread idle.
 template <typename Event>
 class Job : public Tickable {
  public:

@@ -9,6 +9,7 @@
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/bodies.h"
+#include "server/compute_pool.h"
 #include "server/event_builder.h"
 #include "server/request_parser.h"
 #include "server/run_guarded.h"

@@ -69,10 +69,11 @@ double BoundaryMeter::StrengthBetween(const PieceGraph& graph,
     return AsPart(std::min(graph.AreaOfShells(groups.first),
                            graph.AreaOfShells(groups.second)),
                   kShellShare);
-  return Ranked(Strength(MeasureBoundary(graph, groups)),
-                graph.ApartInFirstSplit(groups)) *
-         AsPart(std::min(graph.Area(groups.first), graph.Area(groups.second)),
-                kSpeckShare);
+  const double strength =
+      Strength(MeasureBoundary(graph, groups)) *
+      AsPart(std::min(graph.Area(groups.first), graph.Area(groups.second)),
+             kSpeckShare);
+  return Ranked(strength, graph.ApartInFirstSplit(groups));
 }
 
 double BoundaryMeter::AsPart(double area, double half) const {

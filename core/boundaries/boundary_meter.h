@@ -58,15 +58,15 @@ class BoundaryMeter {
                 const std::vector<double>& face_areas,
                 const Curvature& curvature, double share = 1);
 
-  // The strength of the boundary of two groups: Strength(), if it is one of the
-  // automatic cut ranked by how far the groups are apart in the first split
-  // (core/boundaries/calibration.h), times
+  // The strength of the boundary of two groups: Strength() times
   // s^2 / (s^2 + kSpeckShare^2), s being the area of the smaller group by that
   // of the largest body, for people draw no parts of a few faces, and none had
-  // a say in the weights. Where no edge has faces of both they are of different
-  // shells, and it is s^2 / (s^2 + kShellShare^2), s being the share of the
-  // shells of one group, and of the group for which that is less: whoever made
-  // a shell of its own, and a large one, made a part.
+  // a say in the weights; beyond kAutomaticSalience it is ranked by how far the
+  // groups are apart in the first split (core/boundaries/calibration.h). Where
+  // no edge has faces of both they are of different shells, and it is s^2 /
+  // (s^2 + kShellShare^2), s being the share of the shells of one group, and of
+  // the group for which that is less: whoever made a shell of its own, and a
+  // large one, made a part.
   double StrengthBetween(const PieceGraph& graph,
                          const PieceGraph::Pair& groups);
 

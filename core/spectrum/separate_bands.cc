@@ -25,11 +25,12 @@ std::vector<Eigen::Index> LooseOf(const Range& range,
 Eigen::MatrixXd Overlaps(const Eigen::VectorXd& mass,
                          const EigenvectorMatrix& vectors,
                          const std::vector<Eigen::Index>& chosen,
-                         const Range& range) {
+                         const Range& range, const CancelToken& cancel) {
   const auto count = static_cast<Eigen::Index>(chosen.size());
   Eigen::MatrixXd overlaps = Eigen::MatrixXd::Zero(range.size(), count);
   Eigen::VectorXd row(range.size());
-  for (Eigen::Index v = 0; count > 0 && v < vectors.rows(); ++v) {
+  if (count == 0) return overlaps;
+  for (Eigen::Index v = 0; v < vectors.rows() && !cancel.IsCancelled(); ++v) {
     row = vectors.row(v).segment(range.first, range.size()).cast<double>();
     for (Eigen::Index c = 0; c < count; ++c)
       overlaps.col(c) += mass[v] * vectors(v, chosen[c]) * row;
@@ -41,7 +42,8 @@ Eigen::MatrixXd Overlaps(const Eigen::VectorXd& mass,
 
 void SeparateBands(const Eigen::VectorXd& mass,
                    const std::vector<double>& residuals, double loose,
-                   Eigen::Index begin, EigenvectorMatrix& vectors) {
+                   Eigen::Index begin, const CancelToken& cancel,
+                   EigenvectorMatrix& vectors) {
   const Range before{std::max<Eigen::Index>(0, begin - kBandReach), begin};
   const Range after{begin, static_cast<Eigen::Index>(residuals.size())};
   if (before.size() == 0 || after.size() == 0) return;
@@ -50,12 +52,14 @@ void SeparateBands(const Eigen::VectorXd& mass,
   const std::vector<Eigen::Index> loose_after =
       LooseOf(after, residuals, loose);
   if (loose_before.empty() && loose_after.empty()) return;
-  Eigen::MatrixXd of_before = Overlaps(mass, vectors, loose_before, after);
-  const Eigen::MatrixXd of_after = Overlaps(mass, vectors, loose_after, before);
+  Eigen::MatrixXd of_before =
+      Overlaps(mass, vectors, loose_before, after, cancel);
+  const Eigen::MatrixXd of_after =
+      Overlaps(mass, vectors, loose_after, before, cancel);
   // Two columns that are both loose are parted once.
   for (Eigen::Index k : loose_after) of_before.row(k - begin).setZero();
   Eigen::VectorXd earlier(before.size()), taken(after.size());
-  for (Eigen::Index v = 0; v < vectors.rows(); ++v) {
+  for (Eigen::Index v = 0; v < vectors.rows() && !cancel.IsCancelled(); ++v) {
     earlier =
         vectors.row(v).segment(before.first, before.size()).cast<double>();
     taken.setZero();

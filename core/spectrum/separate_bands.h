@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/base/cancel_token.h"
 #include "core/spectrum/eigen_pairs.h"
 
 namespace marrow {
@@ -14,12 +15,14 @@ namespace marrow {
 // of the first columns of `vectors`, which are there; `mass` is the diagonal of
 // M. Makes those from `begin` on M-orthogonal to the kBandReach before it, if
 // either has a residual above `loose`. What is taken away is so little that
-// those from `begin` on stay orthonormal among themselves, to its square. Time:
+// those from `begin` on stay orthonormal among themselves, to its square.
+// Anything, once cancelled. Time:
 // O(n kBandReach) a column with such a residual.
 inline constexpr Eigen::Index kBandReach = 64;
 void SeparateBands(const Eigen::VectorXd& mass,
                    const std::vector<double>& residuals, double loose,
-                   Eigen::Index begin, EigenvectorMatrix& vectors);
+                   Eigen::Index begin, const CancelToken& cancel,
+                   EigenvectorMatrix& vectors);
 
 }  // namespace marrow
 

@@ -81,11 +81,12 @@ void Finish(Eigen::Index first, Eigen::VectorXd& values,
 }
 
 // Appends the parts, in the mesh's order and scaled, but for what is beyond
-// `most` pairs, with their residuals. Empties the parts as it goes.
+// `most` pairs, with their residuals. Empties the parts as it goes. Anything,
+// once cancelled.
 void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
             const Eigen::VectorXd& scale, Eigen::Index most, double tolerance,
             Eigen::VectorXd& values, EigenvectorMatrix& vectors,
-            std::vector<double>& residuals) {
+            std::vector<double>& residuals, const CancelToken& cancel) {
   const Eigen::VectorXd mass = scale.cwiseAbs2().cwiseInverse();
   Eigen::Index column = values.size(), count = column;
   for (const SpectrumPart& part : parts) count += part.end - part.first;
@@ -108,8 +109,11 @@ void Append(std::vector<SpectrumPart> parts, const std::vector<int>& order,
         vectors(v, column + k) = static_cast<float>(row[k] * scale[v]);
     }
     part.band = {};
+    // What comes after is parted from the constant pair as Finish() leaves it,
+    // in whatever steps it is asked for.
     if (column == 0) vectors.col(0).setOnes();
-    SeparateBands(mass, residuals, kLooseShare * tolerance, column, vectors);
+    SeparateBands(mass, residuals, kLooseShare * tolerance, column, cancel,
+                  vectors);
     column += width;
   }
 }
@@ -212,7 +216,8 @@ class SolverStream : public EigenPairStream {
         pairs.for_any_count &= !part.of_cluster;
       Append(*std::move(parts), slicer_->order(), problem_.inverse_sqrt_mass,
              most_, tolerance_, pairs.eigenvalues, pairs.eigenvectors,
-             residuals_);
+             residuals_, cancel);
+      MARROW_RETURN_IF_ERROR(cancel.Check());
     }
     return absl::OkStatus();
   }

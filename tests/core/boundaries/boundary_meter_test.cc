@@ -126,11 +126,14 @@ TEST(BoundaryMeterTest, TheFirstSplitRanksWhatTheAutomaticCutKeeps) {
   ASSERT_GT(strong, kAutomaticSalience);
   const double along = RankedAcross(mesh, 0.52, 0.52);
   const double near = RankedAcross(mesh, 0.52, 0.3);
+  const double partly = RankedAcross(mesh, 0.52, -1.5);
   const double within = RankedAcross(mesh, 0.52, -9);
   EXPECT_LT(along, 1);
   EXPECT_GT(along, strong);
   EXPECT_GT(near, strong);
   EXPECT_LE(near, along);
+  EXPECT_LT(partly, near);
+  EXPECT_GT(partly, within);
   EXPECT_LT(within, strong);
   EXPECT_GT(within, kAutomaticSalience);
   const double weak = Strength(CutAcross(mesh, 1.5));

@@ -45,7 +45,8 @@ TEST(SeparateBandsTest, WhatALaterColumnHasOfEarlierOnesIsTaken) {
   EXPECT_GT(WorstOverlap(bands), 9e-4);
   std::vector<double> residuals(kColumns, 1e-9);
   residuals[7] = 1e-4;
-  SeparateBands(bands.mass, residuals, 1e-5, kBefore, bands.vectors);
+  SeparateBands(bands.mass, residuals, 1e-5, kBefore, CancelToken(),
+                bands.vectors);
   EXPECT_LT(WorstOverlap(bands), 5e-6);
 }
 
@@ -55,7 +56,8 @@ TEST(SeparateBandsTest, AnEarlierColumnStaysAsItWas) {
   const EigenvectorMatrix before = bands.vectors;
   std::vector<double> residuals(kColumns, 1e-9);
   residuals[1] = residuals[3] = 1e-4;
-  SeparateBands(bands.mass, residuals, 1e-5, kBefore, bands.vectors);
+  SeparateBands(bands.mass, residuals, 1e-5, kBefore, CancelToken(),
+                bands.vectors);
   EXPECT_LT(WorstOverlap(bands), 5e-6);
   EXPECT_EQ(bands.vectors.leftCols(kBefore), before.leftCols(kBefore));
 }
@@ -64,7 +66,7 @@ TEST(SeparateBandsTest, WithoutLooseColumnsNothingIsTouched) {
   Bands bands = MakeBands(1e-3f);
   const EigenvectorMatrix before = bands.vectors;
   SeparateBands(bands.mass, std::vector<double>(kColumns, 1e-6), 1e-5, kBefore,
-                bands.vectors);
+                CancelToken(), bands.vectors);
   EXPECT_EQ(bands.vectors, before);
 }
 
