@@ -12,7 +12,7 @@
 namespace marrow {
 
 // Changes whenever equal requests may give other answers.
-inline constexpr char kAlgorithmRevision[] = "paper/8 merge/15";
+inline constexpr char kAlgorithmRevision[] = "paper/8 merge/16";
 
 enum class Method {
   kPaper,  // top-down: a level is a depth of the recursion
