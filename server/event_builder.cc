@@ -172,6 +172,7 @@ void SetMeshReport(const MeshReport& report, v1::MeshReport* message) {
   message->set_unused_points(report.unused_points);
   message->set_degenerate_faces(report.degenerate_faces);
   message->set_duplicate_faces(report.duplicate_faces);
+  message->set_inner_wall_faces(report.inner_wall_faces);
   message->set_zero_area_faces(report.zero_area_faces);
   message->set_components(report.components);
   message->set_boundary_edges(report.boundary_edges);

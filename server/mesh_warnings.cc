@@ -48,6 +48,11 @@ constexpr Kind kKinds[] = {
     {"DUPLICATE_FACES", true, &MeshReport::duplicate_faces,
      "face has the same corners as another, and the label of that one",
      "faces have the same corners as another, and the label of that one"},
+    {"INNER_WALL_FACES", true, &MeshReport::inner_wall_faces,
+     "face is inside, back to back with another; it has the label of a face "
+     "beside it",
+     "faces are inside, where shells lie flush against each other; they have "
+     "the labels of faces beside them"},
     {"ZERO_AREA_FACES", false, &MeshReport::zero_area_faces,
      "face has its corners on one line; its edges are lengthened a little",
      "faces have their corners on one line; all edges are lengthened a little"},

@@ -45,6 +45,7 @@ void PrintForPerson(const std::string& file,
   PrintCount("non-manifold vertices", report.nonmanifold_vertices());
   PrintCount("degenerate faces", report.degenerate_faces());
   PrintCount("duplicate faces", report.duplicate_faces());
+  PrintCount("inner wall faces", report.inner_wall_faces());
   PrintCount("zero-area faces", report.zero_area_faces());
   PrintCount("sliver faces", report.sliver_faces());
   PrintCount("flipped faces", report.flipped_faces());

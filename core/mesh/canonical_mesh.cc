@@ -15,6 +15,7 @@
 #include "core/base/status_macros.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/cracks.h"
+#include "core/mesh/inner_walls.h"
 #include "core/mesh/orientation.h"
 #include "core/mesh/spots.h"
 #include "core/mesh/t_junctions.h"
@@ -34,13 +35,6 @@ struct FaceRecord {
   Triangle spots;
   bool descends;          // the payload has it the other way round
   uint32_t decoded_face;  // none for all but the largest part of one
-};
-
-// In which directions the payload has a kept face: of both for twins that lie
-// back to back.
-struct Directions {
-  bool ascending = false;
-  bool descending = false;
 };
 
 bool IsDegenerate(const Triangle& t) {
@@ -113,33 +107,71 @@ absl::Status KeepFaces(std::vector<FaceRecord>& records,
       faces.push_back(spots);
       directions.emplace_back();
     }
-    (descends ? directions.back().descending : directions.back().ascending) =
-        true;
+    ++(descends ? directions.back().descending : directions.back().ascending);
     if (decoded_face != kNoIndex)
       result.face_map[decoded_face] = static_cast<uint32_t>(faces.size() - 1);
   }
   return cancel.Check();
 }
 
-// Numbers the spots that are used; the numbers keep the order of the spots, so
-// the faces stay ascending and sorted. Returns spot -> vertex.
-std::vector<uint32_t> KeepVertices(const Spots& spots, TriangleMesh& mesh) {
-  std::vector<uint32_t> vertex_of_spot(spots.positions.rows(), kNoIndex);
-  for (const Triangle& face : mesh.faces) {
-    for (uint32_t spot : face) vertex_of_spot[spot] = 0;
-  }
-  mesh.positions.resize(spots.positions.rows(), 3);
+// Numbers the vertices that are used; the numbers keep their order, so the
+// faces stay ascending and sorted. Returns the new number of each, kNoIndex for
+// the others.
+std::vector<uint32_t> KeepUsedVertices(TriangleMesh& mesh) {
+  std::vector<uint32_t> now(mesh.NumVertices(), kNoIndex);
+  for (const Triangle& face : mesh.faces)
+    for (uint32_t v : face) now[v] = 0;
   uint32_t count = 0;
-  for (uint32_t spot = 0; spot < vertex_of_spot.size(); ++spot) {
-    if (vertex_of_spot[spot] == kNoIndex) continue;
-    mesh.positions.row(count) = spots.positions.row(spot);
-    vertex_of_spot[spot] = count++;
+  for (uint32_t v = 0; v < now.size(); ++v) {
+    if (now[v] == kNoIndex) continue;
+    mesh.positions.row(count) = mesh.positions.row(v);
+    now[v] = count++;
   }
   mesh.positions.conservativeResize(count, 3);
-  for (Triangle& face : mesh.faces) {
-    for (uint32_t& corner : face) corner = vertex_of_spot[corner];
+  for (Triangle& face : mesh.faces)
+    for (uint32_t& corner : face) corner = now[corner];
+  return now;
+}
+
+// Takes out the faces that are walls on every side; the payload's faces there
+// get the face beside them. How many those are. `outside` is that of
+// FindInnerWalls(), not empty.
+uint64_t DropInnerWalls(const std::vector<uint32_t>& outside,
+                        const std::vector<FaceRecord>& records,
+                        CanonicalMesh& result,
+                        std::vector<Directions>& directions,
+                        std::vector<uint32_t>& vertex_of_spot) {
+  std::vector<Triangle>& faces = result.mesh.faces;
+  const auto is_wall = [&](uint32_t f) {
+    const bool is_one = directions[f].ascending + directions[f].descending == 1;
+    return outside[2 * f] != kNoIndex &&
+           (is_one || outside[2 * f + 1] != kNoIndex);
+  };
+  std::vector<uint32_t> now(faces.size(), kNoIndex);
+  uint32_t kept = 0;
+  for (uint32_t f = 0; f < faces.size(); ++f)
+    if (!is_wall(f)) now[f] = kept++;
+  uint64_t dropped = 0;
+  for (const FaceRecord& record : records) {
+    if (record.decoded_face == kNoIndex) continue;
+    uint32_t& face = result.face_map[record.decoded_face];
+    if (now[face] == kNoIndex) {
+      face = outside[SideOf(face, directions[face], record.descends)];
+      ++dropped;
+    }
+    face = now[face];
   }
-  return vertex_of_spot;
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    if (now[f] == kNoIndex) continue;
+    faces[now[f]] = faces[f];
+    directions[now[f]] = directions[f];
+  }
+  faces.resize(kept);
+  directions.resize(kept);
+  const std::vector<uint32_t> vertices = KeepUsedVertices(result.mesh);
+  for (uint32_t& vertex : vertex_of_spot)
+    if (vertex != kNoIndex) vertex = vertices[vertex];
+  return dropped;
 }
 
 // The least number of faces that the payload would have to turn over; none of
@@ -148,9 +180,9 @@ uint64_t CountFlipped(const std::vector<Directions>& directions,
                       const Sides& sides) {
   std::vector<std::array<uint64_t, 2>> counts(sides.NumParts());
   for (size_t f = 0; f < directions.size(); ++f) {
-    const auto [ascending, descending] = directions[f];
-    if (ascending != descending)
-      ++counts[sides.part[f]][descending != sides.is_turned[f]];
+    if (!directions[f].AreBoth())
+      ++counts[sides.part[f]]
+              [(directions[f].descending > 0) != sides.is_turned[f]];
   }
   uint64_t flipped = 0;
   for (uint32_t i = 0; i < sides.NumParts(); ++i)
@@ -320,10 +352,21 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
   result.face_map.assign(decoded.faces.size(), kNoIndex);
   std::vector<Directions> directions;
   MARROW_RETURN_IF_ERROR(KeepFaces(records, cancel, result, directions));
-  vertex_of_spot = KeepVertices(spots, result.mesh);
+  result.mesh.positions = spots.positions;
+  vertex_of_spot = KeepUsedVertices(result.mesh);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  const Sides sides =
-      FindSides(result.mesh, Adjacency(result.mesh, cancel), cancel);
+  Adjacency adjacency(result.mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  MARROW_ASSIGN_OR_RETURN(
+      const std::vector<uint32_t> outside,
+      FindInnerWalls(result.mesh, adjacency, directions, cancel));
+  uint64_t inner_wall_faces = 0;
+  if (!outside.empty()) {
+    inner_wall_faces =
+        DropInnerWalls(outside, records, result, directions, vertex_of_spot);
+    adjacency = Adjacency(result.mesh, cancel);
+  }
+  const Sides sides = FindSides(result.mesh, adjacency, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const std::vector<bool> turned = FacesInward(result.mesh, sides, cancel);
   MARROW_RETURN_IF_ERROR(TurnOver(turned, cancel, result));
@@ -335,7 +378,9 @@ absl::StatusOr<CanonicalMesh> Assemble(const DecodedMesh& decoded,
       decoded.positions.rows() - spots.positions.rows();
   result.report.unused_points = CountUnusedPoints(decoded);
   result.report.degenerate_faces = decoded.faces.size() - records.size();
-  result.report.duplicate_faces = records.size() - directions.size();
+  result.report.duplicate_faces =
+      records.size() - inner_wall_faces - directions.size();
+  result.report.inner_wall_faces = inner_wall_faces;
   result.report.flipped_faces = CountFlipped(directions, sides);
   MARROW_RETURN_IF_ERROR(CheckSize(result.report));
   return result;
@@ -401,6 +446,7 @@ absl::Status AssembleSplit(const DecodedMesh& decoded, const Spots& spots,
                           Assemble(decoded, spots, cancel, vertex_of_spot));
   result.report.degenerate_faces = before.degenerate_faces;
   result.report.duplicate_faces = before.duplicate_faces;
+  result.report.inner_wall_faces = before.inner_wall_faces;
   result.report.flipped_faces = before.flipped_faces;
   result.report.crack_points = before.crack_points;
   return absl::OkStatus();

@@ -8,7 +8,9 @@
 // along the Z-order curve of their coordinates as binary numbers: what is near
 // in number is near on the surface, mostly, and a part of a mesh has its
 // vertices in the order that they have alone. Of faces with the same vertices
-// one is kept, and faces agree, outwards, where they can (FacesInward()).
+// one is kept, none of walls inside of shells that lie flush against each other
+// (core/mesh/inner_walls.h), and faces agree, outwards, where they can
+// (FacesInward()).
 #ifndef MARROW_CORE_MESH_CANONICAL_MESH_H_
 #define MARROW_CORE_MESH_CANONICAL_MESH_H_
 
@@ -26,10 +28,11 @@ namespace marrow {
 
 struct CanonicalMesh {
   TriangleMesh mesh;
-  // Decoded face -> canonical face. A duplicate has that of its twin, a
-  // degenerate face that of a neighbour: the first face that shares its edge,
-  // else its lesser vertex, else the first of the nearer of the two vertices
-  // between which its lesser corner would be sorted. So every entry is a face.
+  // Decoded face -> canonical face. A duplicate has that of its twin, a face of
+  // an inner wall that beside it, a degenerate face that of a neighbour: the
+  // first face that shares its edge, else its lesser vertex, else the first of
+  // the nearer of the two vertices between which its lesser corner would be
+  // sorted. So every entry is a face.
   std::vector<uint32_t> face_map;
   // Decoded point -> canonical vertex; kNoIndex for a point that no kept face
   // has at its position.

@@ -16,14 +16,16 @@ namespace marrow {
 struct MeshReport {
   uint64_t decoded_points = 0;
   uint64_t decoded_faces = 0;
-  uint64_t vertices = 0;       // after welding, used by a kept face
-  uint64_t faces = 0;          // neither degenerate nor duplicate; split
+  uint64_t vertices = 0;  // after welding, used by a kept face
+  // Neither degenerate nor duplicate nor inner walls; split.
+  uint64_t faces = 0;
   uint64_t welded_points = 0;  // points less different positions
   uint64_t crack_points = 0;   // vertices at cracks, made one with others
   uint64_t t_junctions = 0;    // vertices inside edges, which are split there
   uint64_t unused_points = 0;  // points that no decoded face uses
   uint64_t degenerate_faces = 0;  // two corners at one position; dropped
   uint64_t duplicate_faces = 0;   // same three vertices as another; dropped
+  uint64_t inner_wall_faces = 0;  // of either side; dropped
   uint64_t zero_area_faces = 0;   // kept, three corners exactly on a line
   uint64_t sliver_faces = 0;      // kept, with an angle under one degree
   // Faces to turn over, at the least, for neighbours to agree; one-sided parts

@@ -57,13 +57,6 @@ class ParitySets {
   std::vector<bool> one_sided_;
 };
 
-// Whether the face runs from v to w along their edge.
-bool RunsAlong(const Triangle& face, uint32_t v, uint32_t w) {
-  for (int i = 0; i < 3; ++i)
-    if (face[i] == v) return face[(i + 1) % 3] == w;
-  return false;
-}
-
 ParitySets JoinFaces(const TriangleMesh& mesh, const Adjacency& adjacency,
                      const CancelToken& cancel) {
   ParitySets sets(mesh.NumFaces());
@@ -106,6 +99,12 @@ std::vector<Eigen::Vector3d> Centers(const TriangleMesh& mesh,
 }
 
 }  // namespace
+
+bool RunsAlong(const Triangle& face, uint32_t v, uint32_t w) {
+  for (int i = 0; i < 3; ++i)
+    if (face[i] == v) return face[(i + 1) % 3] == w;
+  return false;
+}
 
 Sides FindSides(const TriangleMesh& mesh, const Adjacency& adjacency,
                 const CancelToken& cancel) {

@@ -11,6 +11,9 @@
 
 namespace marrow {
 
+// Whether the face runs from v to w along their edge.
+bool RunsAlong(const Triangle& face, uint32_t v, uint32_t w);
+
 // Which faces agree. A part is what edges of two faces join.
 struct Sides {
   std::vector<uint32_t> part;  // face -> part, numbered by their least faces

@@ -63,6 +63,15 @@ class Mutator {
         {"dumbbell", Dumbbell(0.8, 16)},
         {"cross", LimbCross(2)},
         {"book", Book(4, 40)},
+        {"blocks", CubeShells({{0, 0, 0},
+                               {0, 0, 1},
+                               {0, 0, 2},
+                               {0, 1, 1},
+                               {0, 2, 1},
+                               {1, 0, 2},
+                               {-1, 0, 2},
+                               {-2, 0, 2}},
+                              2)},
     };
     return *shapes;
   }

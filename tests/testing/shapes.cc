@@ -257,6 +257,14 @@ TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
   return mesh;
 }
 
+TriangleMesh CubeShells(const std::set<std::array<int, 3>>& cubes,
+                        int fineness) {
+  std::vector<TriangleMesh> shells;
+  for (const auto& cube : cubes)
+    shells.push_back(CubesSurface({cube}, fineness));
+  return Together(shells);
+}
+
 TriangleMesh LimbCross(uint32_t fineness) {
   std::set<std::array<int, 3>> cubes;
   for (int x = -1; x <= 1; ++x)

@@ -33,6 +33,9 @@ TriangleMesh Dumbbell(double left, uint32_t around);
 // The boundary of a set of unit cubes, each side cut into fineness^2 squares.
 TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
                           int fineness);
+// The same cubes, each with a boundary of its own: flush shells.
+TriangleMesh CubeShells(const std::set<std::array<int, 3>>& cubes,
+                        int fineness);
 // A ball-like body with four limbs of different lengths: a creature of
 // `fineness`^2 squares a unit of its surface, slightly rounded.
 TriangleMesh LimbCross(uint32_t fineness);
