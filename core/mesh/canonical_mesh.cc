@@ -143,9 +143,10 @@ uint64_t DropInnerWalls(const std::vector<uint32_t>& outside,
                         std::vector<uint32_t>& vertex_of_spot) {
   std::vector<Triangle>& faces = result.mesh.faces;
   const auto is_wall = [&](uint32_t f) {
+    const uint32_t side = 2 * f;
     const bool is_one = directions[f].ascending + directions[f].descending == 1;
-    return outside[2 * f] != kNoIndex &&
-           (is_one || outside[2 * f + 1] != kNoIndex);
+    return outside[side] != kNoIndex &&
+           (is_one || outside[side + 1] != kNoIndex);
   };
   std::vector<uint32_t> now(faces.size(), kNoIndex);
   uint32_t kept = 0;

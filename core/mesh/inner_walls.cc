@@ -102,14 +102,14 @@ class WallFinder {
 
   // The direction from the edge into the face; zero where it has no area.
   Eigen::Vector3d AwayFrom(uint32_t e, uint32_t f) const {
-    const auto [v, w] = adjacency_.EdgeVertices(e);
+    const auto [first, last] = adjacency_.EdgeVertices(e);
     const Triangle& face = mesh_.faces[f];
-    const uint32_t top = face[0] ^ face[1] ^ face[2] ^ v ^ w;
-    const auto from_v = [&](uint32_t x) -> Eigen::Vector3d {
+    const uint32_t top = face[0] ^ face[1] ^ face[2] ^ first ^ last;
+    const auto from_first = [&, v = first](uint32_t x) -> Eigen::Vector3d {
       return (unit_.row(x) - unit_.row(v)).transpose();
     };
-    const Eigen::Vector3d along = from_v(w).stableNormalized();
-    const Eigen::Vector3d up = from_v(top);
+    const Eigen::Vector3d along = from_first(last).stableNormalized();
+    const Eigen::Vector3d up = from_first(top);
     return (up - up.dot(along) * along).stableNormalized();
   }
 
