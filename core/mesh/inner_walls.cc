@@ -51,7 +51,7 @@ class WallFinder {
     panels_ = DisjointSets(2 * mesh_.NumFaces());
     unit_ = mesh_.positions * UnitScale(mesh_);
     MARROW_RETURN_IF_ERROR(FindBorders());
-    PairPanels();
+    MARROW_RETURN_IF_ERROR(PairPanels());
     if (num_walls_ == 0) return std::vector<uint32_t>();
     MARROW_RETURN_IF_ERROR(KeepWhatClosesNothing());
     MARROW_RETURN_IF_ERROR(FindOutside(/*agreeing=*/true));
@@ -166,9 +166,10 @@ class WallFinder {
   }
 
   // Numbers the walls, by panel.
-  void PairPanels() {
+  absl::Status PairPanels() {
     std::vector<Borders> candidates = CandidateBorders();
-    std::stable_sort(candidates.begin(), candidates.end(), IsBefore);
+    MARROW_RETURN_IF_ERROR(SortUnlessCancelled(
+        candidates.begin(), candidates.end(), IsBefore, cancel_));
     partner_.assign(2 * size_t{mesh_.NumFaces()}, kNoIndex);
     for (auto run = candidates.begin(); run != candidates.end();) {
       const auto end = std::upper_bound(run, candidates.end(), *run, IsBefore);
@@ -178,48 +179,45 @@ class WallFinder {
       }
       run = end;
     }
-    NumberFlatPairs();
+    return NumberFlatPairs();
   }
 
-  // A panel and its partner together.
-  struct Pair {
-    std::vector<uint32_t> sides;
-    uint32_t wall = kNoIndex;
-  };
+  // The sides of a panel and its partner.
+  using Pair = std::vector<uint32_t>;
 
-  void NumberFlatPairs() {
+  absl::Status NumberFlatPairs() {
     std::vector<uint32_t> pair_of(partner_.size(), kNoIndex);  // lesser panel
     std::vector<Pair> pairs;
-    for (uint32_t side = 0; side < partner_.size(); ++side) {
+    const auto gather = [&](uint32_t side) {
       const uint32_t panel = panels_.Find(side);
-      if (!Exists(side) || partner_[panel] == kNoIndex) continue;
+      if (!Exists(side) || partner_[panel] == kNoIndex) return;
       uint32_t& pair = pair_of[std::min(panel, partner_[panel])];
       if (pair == kNoIndex) {
         pair = static_cast<uint32_t>(pairs.size());
         pairs.emplace_back();
       }
-      pairs[pair].sides.push_back(side);
-    }
+      pairs[pair].push_back(side);
+    };
+    MARROW_RETURN_IF_ERROR(ForEachIndex(partner_.size(), cancel_, gather));
     wall_of_side_.assign(partner_.size(), kNoIndex);
-    for (const Pair& pair : pairs) {
-      if (!IsFlat(pair)) continue;
-      for (uint32_t side : pair.sides) wall_of_side_[side] = num_walls_;
+    return ForEachIndex(pairs.size(), cancel_, [&](size_t i) {
+      if (!IsFlat(pairs[i])) return;
+      for (uint32_t side : pairs[i]) wall_of_side_[side] = num_walls_;
       ++num_walls_;
-    }
+    });
   }
 
   // Against the plane of its largest face.
   bool IsFlat(const Pair& pair) const {
-    if (pair.sides.size() == 2 && pair.sides[0] / 2 == pair.sides[1] / 2)
-      return true;
+    if (pair.size() == 2 && pair[0] / 2 == pair[1] / 2) return true;
     const Eigen::Vector3d origin =
-        unit_.row(mesh_.faces[pair.sides[0] / 2][0]).transpose();
+        unit_.row(mesh_.faces[pair[0] / 2][0]).transpose();
     double extent = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     const auto from_origin = [&](uint32_t side, int i) -> Eigen::Vector3d {
       return unit_.row(mesh_.faces[side / 2][i]).transpose() - origin;
     };
-    for (uint32_t side : pair.sides) {
+    for (uint32_t side : pair) {
       const Eigen::Vector3d p = from_origin(side, 0);
       const Eigen::Vector3d n =
           (from_origin(side, 1) - p).cross(from_origin(side, 2) - p);
@@ -234,7 +232,7 @@ class WallFinder {
           return true;
       return false;
     };
-    return std::none_of(pair.sides.begin(), pair.sides.end(), leaves);
+    return std::none_of(pair.begin(), pair.end(), leaves);
   }
 
   // Takes out of wall_of_side_ the walls without which the surface would not be
