@@ -104,6 +104,7 @@ struct SampleArguments {
   std::string output;
   std::string parts;
   std::optional<uint32_t> faces;
+  bool quiet = false;
 };
 
 }  // namespace marrow::client

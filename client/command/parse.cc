@@ -185,8 +185,8 @@ void AddService(CLI::App& app, ServiceArguments& service) {
   app.add_flag("--json", service.json, "Write JSON to standard output");
 }
 
-void AddQuiet(CLI::App& app, ServiceArguments& service) {
-  app.add_flag("-q,--quiet", service.quiet, "Tell nothing but failures");
+void AddQuiet(CLI::App& app, bool& quiet) {
+  app.add_flag("-q,--quiet", quiet, "Tell nothing but failures");
 }
 
 void AddPairs(CLI::App& app, const std::string& names,
@@ -299,7 +299,7 @@ void AddSegment(CLI::App& root, SegmentArguments& arguments) {
   AddMethod(app, arguments.method);
   AddCut(app, arguments.cut);
   AddService(app, arguments.service);
-  AddQuiet(app, arguments.service);
+  AddQuiet(app, arguments.service.quiet);
   app.add_option("--threads", arguments.service.threads,
                  absl::StrCat("Files to work on at once, 1 to ",
                               kMaxFilesAtOnce, "; without it, one a core"))
@@ -321,7 +321,7 @@ void AddCutCommand(CLI::App& root, CutArguments& arguments) {
   AddMethod(app, arguments.method);
   AddCut(app, arguments.cut);
   AddService(app, arguments.service);
-  AddQuiet(app, arguments.service);
+  AddQuiet(app, arguments.service.quiet);
   app.footer(kCutFooter);
 }
 
@@ -333,7 +333,7 @@ void AddInspect(CLI::App& root, InspectArguments& arguments) {
       ->check(CheckFile)
       ->type_name("");
   AddService(app, arguments.service);
-  AddQuiet(app, arguments.service);
+  AddQuiet(app, arguments.service.quiet);
 }
 
 void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
@@ -350,7 +350,7 @@ void AddSpectrum(CLI::App& root, SpectrumArguments& arguments) {
       ->type_name("FILE");
   app.add_flag("--strict", arguments.strict, "Residuals of at most 1e-8");
   AddService(app, arguments.service);
-  AddQuiet(app, arguments.service);
+  AddQuiet(app, arguments.service.quiet);
   app.footer(kSpectrumFooter);
   app.callback([&arguments] {
     if (arguments.output == "-" && arguments.service.json) {
@@ -385,6 +385,7 @@ void AddSample(CLI::App& root, SampleArguments& arguments) {
                  "Number of faces, 5000 to 50000 (10000)")
       ->check(CheckWholeNumber)
       ->type_name("N");
+  AddQuiet(app, arguments.quiet);
   app.callback([&arguments, list] {
     if (list->count() > 0) return;
     if (arguments.name.empty()) throw CLI::RequiredError("NAME (or --list)");

@@ -59,12 +59,14 @@ absl::Status WriteSample(const SampleArguments& arguments) {
       MakeSample(arguments.name, arguments.pose,
                  arguments.faces.value_or(kDefaultSampleFaces)));
   MARROW_RETURN_IF_ERROR(WriteSampleMesh(sample.mesh, arguments.output));
-  absl::PrintF("%s: %d vertices, %d faces -> %s\n", arguments.name,
-               sample.mesh.NumVertices(), sample.mesh.NumFaces(),
-               arguments.output);
+  if (!arguments.quiet)
+    absl::PrintF("%s: %d vertices, %d faces -> %s\n", arguments.name,
+                 sample.mesh.NumVertices(), sample.mesh.NumFaces(),
+                 arguments.output);
   if (arguments.parts.empty()) return absl::OkStatus();
   MARROW_RETURN_IF_ERROR(
       WriteFileAtomically(arguments.parts, SegFile(sample.face_parts)));
+  if (arguments.quiet) return absl::OkStatus();
   absl::PrintF("parts -> %s\n", arguments.parts);
   for (size_t part = 0; part < sample.part_names.size(); ++part) {
     absl::PrintF("  %d %s\n", part, sample.part_names[part]);

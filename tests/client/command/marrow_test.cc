@@ -295,6 +295,12 @@ TEST(MarrowTest, SamplesAreListedAndMade) {
   EXPECT_EQ(made.code, 0) << made.err;
   const std::string parts = ReadFile(folder / "hand.seg");
   EXPECT_EQ(std::count(parts.begin(), parts.end(), '\n'), 5000);
+  EXPECT_THAT(made.out, HasSubstr("thumb"));
+  const Finished quiet =
+      Marrow({"sample", "hand", "-q", "-o", folder / "again.ply", "--parts",
+              folder / "again.seg"});
+  EXPECT_EQ(quiet.code, 0) << quiet.err;
+  EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
 TEST(MarrowTest, ImpossibleSamplesAreUsageErrors) {
