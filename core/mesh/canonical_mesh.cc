@@ -447,7 +447,6 @@ absl::Status AssembleSplit(const DecodedMesh& decoded, const Spots& spots,
                           Assemble(decoded, spots, cancel, vertex_of_spot));
   result.report.degenerate_faces = before.degenerate_faces;
   result.report.duplicate_faces = before.duplicate_faces;
-  result.report.inner_wall_faces = before.inner_wall_faces;
   result.report.flipped_faces = before.flipped_faces;
   result.report.crack_points = before.crack_points;
   return absl::OkStatus();

@@ -24,11 +24,16 @@ constexpr double kFlat = 1e-4;
 // Of the cosine between two faces of an edge: they lie on each other.
 constexpr double kFolded = 1 - 1e-6;
 
+// Of the cosine between a face's normal and a wall: neither behind the face nor
+// before it.
+constexpr double kLevel = 1e-3;
+
 // Where a panel ends: at an edge of one side, of more than two, or of two that
 // lie on each other.
 struct Border {
   uint32_t panel;
   uint32_t edge;
+  bool forward;
   bool is_open;
 };
 
@@ -126,8 +131,8 @@ class WallFinder {
     const auto end = [&](uint32_t e) {
       if (Joins(e)) return;
       const bool is_open = CountAt(e) == 1;
-      ForEachSideAt(e, [&](uint32_t side, bool) {
-        borders_.push_back({panels_.Find(side), e, is_open});
+      ForEachSideAt(e, [&](uint32_t side, bool forward) {
+        borders_.push_back({panels_.Find(side), e, forward, is_open});
       });
     };
     MARROW_RETURN_IF_ERROR(ForEachIndex(adjacency_.NumEdges(), cancel_, end));
@@ -165,6 +170,13 @@ class WallFinder {
         [](const Border& x, const Border& y) { return x.edge < y.edge; });
   }
 
+  static bool AreOpposite(const Borders& a, const Borders& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Border& x, const Border& y) {
+                        return x.edge == y.edge && x.forward != y.forward;
+                      });
+  }
+
   // Numbers the walls, by panel.
   absl::Status PairPanels() {
     std::vector<Borders> candidates = CandidateBorders();
@@ -173,7 +185,7 @@ class WallFinder {
     partner_.assign(2 * size_t{mesh_.NumFaces()}, kNoIndex);
     for (auto run = candidates.begin(); run != candidates.end();) {
       const auto end = std::upper_bound(run, candidates.end(), *run, IsBefore);
-      if (end - run == 2) {
+      if (end - run == 2 && AreOpposite(run[0], run[1])) {
         partner_[run[0].front().panel] = run[1].front().panel;
         partner_[run[1].front().panel] = run[0].front().panel;
       }
@@ -207,7 +219,7 @@ class WallFinder {
     });
   }
 
-  // Against the plane of its largest face.
+  // Whether all lies in one plane, that of the largest face.
   bool IsFlat(const Pair& pair) const {
     if (pair.size() == 2 && pair[0] / 2 == pair[1] / 2) return true;
     const Eigen::Vector3d origin =
@@ -225,6 +237,7 @@ class WallFinder {
       for (int i = 0; i < 3; ++i)
         extent = std::max(extent, from_origin(side, i).norm());
     }
+    if (normal.isZero(0)) return false;
     normal.stableNormalize();
     const auto leaves = [&](uint32_t side) {
       for (int i = 0; i < 3; ++i)
@@ -235,29 +248,69 @@ class WallFinder {
     return std::none_of(pair.begin(), pair.end(), leaves);
   }
 
+  // 1 or -1: whether the faces of the payload look outwards or inwards, all in
+  // all.
+  double Outwards() const {
+    const Eigen::RowVector3d center = unit_.colwise().mean();
+    double volume = 0;
+    for (uint32_t f = 0; f < mesh_.NumFaces(); ++f) {
+      const auto from_center = [&](int i) -> Eigen::Vector3d {
+        return (unit_.row(mesh_.faces[f][i]) - center).transpose();
+      };
+      const double of_face =
+          from_center(0).dot(from_center(1).cross(from_center(2)));
+      for (uint32_t side : {2 * f, 2 * f + 1})
+        if (Exists(side)) volume += Descends(side) ? -of_face : of_face;
+    }
+    return volume < 0 ? -1 : 1;
+  }
+
+  // As the payload has the side turned.
+  Eigen::Vector3d Normal(uint32_t side) const {
+    const Triangle& face = mesh_.faces[side / 2];
+    const auto to = [&](int i) -> Eigen::Vector3d {
+      return (unit_.row(face[i]) - unit_.row(face[0])).transpose();
+    };
+    const Eigen::Vector3d normal = to(1).cross(to(2)).stableNormalized();
+    return Descends(side) ? -normal : normal;
+  }
+
+  // Whether the walls at an edge lie behind two other sides there, as what is
+  // inside does: none before either, and each behind one.
+  bool AreBehind(uint32_t e, const std::vector<uint32_t>& walls,
+                 const std::vector<uint32_t>& others, double outwards) const {
+    const std::array<Eigen::Vector3d, 2> normals = {
+        outwards * Normal(others[0]), outwards * Normal(others[1])};
+    return std::all_of(walls.begin(), walls.end(), [&](uint32_t side) {
+      const Eigen::Vector3d away = AwayFrom(e, side / 2);
+      const auto [least, most] =
+          std::minmax({normals[0].dot(away), normals[1].dot(away)});
+      return most < kLevel && least < -kLevel;
+    });
+  }
+
   // Takes out of wall_of_side_ the walls without which the surface would not be
-  // closed.
+  // closed, and those that are outside.
   absl::Status KeepWhatClosesNothing() {
     DisjointSets groups(num_walls_);
     std::vector<bool> may_go(num_walls_, true);
     std::vector<bool> is_held(num_walls_, false);
+    const double outwards = Outwards();
+    std::vector<uint32_t> walls;
+    std::vector<uint32_t> others;
     const auto look = [&](uint32_t e) {
-      uint32_t wall_sides = 0;
-      uint32_t count = 0;
-      uint32_t first = kNoIndex;
+      walls.clear();
+      others.clear();
       ForEachSideAt(e, [&](uint32_t side, bool) {
-        ++count;
-        const uint32_t wall = wall_of_side_[side];
-        if (wall == kNoIndex) return;
-        ++wall_sides;
-        if (first == kNoIndex) first = wall;
-        groups.Union(first, wall);
+        (wall_of_side_[side] == kNoIndex ? others : walls).push_back(side);
       });
-      if (first == kNoIndex || Joins(e)) return;
-      const uint32_t others = count - wall_sides;
-      if (others >= 2) is_held[first] = true;
-      if (others == 1 || (others == 0 && wall_sides == 2))
+      if (walls.empty() || Joins(e)) return;
+      const uint32_t first = wall_of_side_[walls[0]];
+      for (uint32_t side : walls) groups.Union(first, wall_of_side_[side]);
+      if (others.size() == 1 || (others.empty() && walls.size() == 2) ||
+          (others.size() == 2 && !AreBehind(e, walls, others, outwards)))
         may_go[first] = false;
+      if (others.size() == 2) is_held[first] = true;
     };
     MARROW_RETURN_IF_ERROR(ForEachIndex(adjacency_.NumEdges(), cancel_, look));
     for (uint32_t wall = 0; wall < num_walls_; ++wall) {

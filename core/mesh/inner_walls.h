@@ -22,25 +22,26 @@ struct Directions {
   bool AreBoth() const { return ascending > 0 && descending > 0; }
 };
 
-// Two of the faces that lie in face f, or the one that does, are its sides: 2 f
-// and 2 f + 1, the ascending one first, the second of no matter where there is
-// one. As every side, the payload's faces have a direction.
+// Face f has the side 2 f and, where the payload has it more than once, the
+// side 2 f + 1; where it has both directions, the ascending one first. The side
+// of one of the payload's faces:
 inline uint32_t SideOf(uint32_t face, const Directions& directions,
                        bool descends) {
   return 2 * face + (descends && directions.AreBoth());
 }
 
-// Side -> the face that is left beside it, of the same shell where neighbours
-// agree on what is outside; kNoIndex for what is no wall. Empty where there are
-// no walls.
+// Side -> a face that is left beside it, mostly of the same shell; kNoIndex for
+// what is no wall. Empty where there are no walls.
 //
 // A panel is what edges of two sides join, unless those lie on each other. Two
-// are a wall if they have the same borders and are one face or lie in one
-// plane, however either is triangulated and turned. Walls that share edges are
-// left out together, if that leaves the surface around them closed: at no edge
-// may one wall end alone or one other side be left, and at some edge others
-// must be. So a sheet with two faces stays, and so does a shell that is there
-// twice.
+// are a wall if they have the same borders in opposite directions and are one
+// face or lie in one plane, however either is triangulated. Walls that share
+// edges are left out together, if the surface around them stays closed and they
+// are inside of it: at no edge may one wall end alone or one other side be
+// left, at some edge two must be, and wherever two are, the walls there lie
+// behind them. So a sheet with two faces stays, and so do a hat of two sides
+// and a shell that is there twice. Where shells disagree on what is outside,
+// walls stay.
 //
 // REQUIRES: faces ascend; directions of each. O(n log n), linear where no edge
 // has more than two sides. Deterministic, thread safe. Errors: CANCELLED.

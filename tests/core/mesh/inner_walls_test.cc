@@ -60,7 +60,10 @@ std::vector<Case> BodiesWithHeads() {
                              {"inside out", body, head},
                              {"twins inside out", body, OtherDiagonals(head)},
                              {"askew", body, head}};
-  for (size_t i : {2, 3}) TurnOver(cases[i].second);
+  for (size_t i : {2, 3}) {
+    TurnOver(cases[i].first);
+    TurnOver(cases[i].second);
+  }
   for (TriangleMesh* mesh : {&cases[4].first, &cases[4].second})
     *mesh = Rounded(Rotated(*mesh, {1, 2, 3}, 0.7));
   return cases;
@@ -151,6 +154,54 @@ TEST(InnerWallsTest, SheetsAndTwinsStay) {
     const CanonicalMesh c = CanonicalOf(Together({body, cape, *sheet}));
     EXPECT_EQ(c.report.inner_wall_faces, 0u);
   }
+}
+
+// What is outside stays, though the surface would be closed without it.
+TEST(InnerWallsTest, WhatIsOutsideStays) {
+  const TriangleMesh body = CubesSurface(Block(2, 2, 2), 2);
+  // A hat of two sides: a cube without its floor.
+  TriangleMesh hat = CubesSurface({{0, 0, 2}}, 2);
+  std::erase_if(hat.faces, [&](const Triangle& f) {
+    return hat.positions(f[0], 2) == 2 && hat.positions(f[1], 2) == 2 &&
+           hat.positions(f[2], 2) == 2;
+  });
+  TriangleMesh lining = hat;
+  TurnOver(lining);
+  // A shell that is there twice, and touches the body along an edge.
+  const TriangleMesh cube = CubesSurface({{2, 0, 2}}, 2);
+  TriangleMesh turned = cube;
+  TurnOver(turned);
+  // A cube inside of a body, flush with its skin.
+  const TriangleMesh large = CubesSurface(Block(3, 3, 3), 2);
+  const TriangleMesh inside = CubesSurface({{1, 1, 2}}, 2);
+  // A ring with a skin of two sides over its hole.
+  Cubes around = Block(3, 3, 1);
+  around.erase({1, 1, 0});
+  const TriangleMesh ring = CubesSurface(around, 2);
+  TriangleMesh skin = Grid(2, 2);
+  skin.positions /= 2;
+  skin.positions.rowwise() += Eigen::RowVector3d(1, 1, 1);
+  TriangleMesh below = skin;
+  TurnOver(below);
+  for (const std::vector<TriangleMesh>& meshes :
+       {std::vector{body, hat, lining},
+        {body, hat, hat},
+        {body, cube, turned},
+        {large, inside},
+        {ring, skin, below}}) {
+    const CanonicalMesh c = CanonicalOf(Together(meshes));
+    EXPECT_EQ(c.report.inner_wall_faces, 0u);
+    EXPECT_GT(c.report.nonmanifold_edges, 0u);
+  }
+}
+
+// Of shells that disagree on what is outside, none is known to be inside.
+TEST(InnerWallsTest, WallsStayWhereOneShellIsInsideOut) {
+  const TriangleMesh body = CubesSurface(Block(2, 2, 2), 3);
+  TriangleMesh head = CubesSurface({{0, 0, 2}}, 3);
+  TurnOver(head);
+  for (const TriangleMesh& other : {head, OtherDiagonals(head)})
+    EXPECT_EQ(CanonicalOf(Together({body, other})).report.inner_wall_faces, 0u);
 }
 
 }  // namespace
