@@ -60,13 +60,13 @@ inline constexpr double kAutomaticSalience = kLevelSalience[1];
 // split off first. Which boundaries are in the automatic cut is not changed by
 // it. On the benchmark the Rand index of level 1 falls from .098 to .087,
 // between poses from .089 to .049. Within a segment, gains of .65, .58 and .5
-// give .084, .086 and .091 on the benchmark; the less, the sooner a muzzle or
-// a cheek joins its head, which people want of a first level. Of parted ones
-// 4 to 8 do about the same, but a head between two arms, whose neck is thrice
-// interrupted, needs 8. The lead is more than it takes to be in level 1, and
-// keeps strong boundaries apart in what a double can hold. As moved boundaries
-// are not quite where the split had them, groups are of one segment up to
-// kTogether and parted from kApart on, by PieceGraph::ApartInFirstSplit().
+// give .084, .086 and .091 on the benchmark; the less, the sooner a muzzle
+// joins its head, which people want of a first level. Of parted ones
+// 4 to 8 do about the same, but a head whose neck the arms interrupt needs 8.
+// The lead is more than it takes to be in level 1, and keeps strong boundaries
+// apart in what a double can hold. As moved boundaries are not quite where the
+// split had them, groups are of one segment up to kTogether and parted from
+// kApart on, by PieceGraph::ApartInFirstSplit().
 inline constexpr double kTogether = 0.25;
 inline constexpr double kApart = 0.75;
 inline constexpr double kLaterSplitGain = 0.55;

@@ -144,9 +144,8 @@ uint64_t DropInnerWalls(const std::vector<uint32_t>& outside,
   std::vector<Triangle>& faces = result.mesh.faces;
   const auto is_wall = [&](uint32_t f) {
     const uint32_t side = 2 * f;
-    const bool is_one = directions[f].ascending + directions[f].descending == 1;
     return outside[side] != kNoIndex &&
-           (is_one || outside[side + 1] != kNoIndex);
+           (directions[f].NumSides() == 1 || outside[side + 1] != kNoIndex);
   };
   std::vector<uint32_t> now(faces.size(), kNoIndex);
   uint32_t kept = 0;

@@ -58,7 +58,7 @@ class WallFinder {
     MARROW_RETURN_IF_ERROR(FindBorders());
     MARROW_RETURN_IF_ERROR(PairPanels());
     if (num_walls_ == 0) return std::vector<uint32_t>();
-    MARROW_RETURN_IF_ERROR(KeepWhatClosesNothing());
+    MARROW_RETURN_IF_ERROR(KeepWallsUnlessInside());
     MARROW_RETURN_IF_ERROR(FindOutside(/*agreeing=*/true));
     MARROW_RETURN_IF_ERROR(FindOutside(/*agreeing=*/false));
     return std::move(outside_);
@@ -66,8 +66,7 @@ class WallFinder {
 
  private:
   bool Exists(uint32_t side) const {
-    const Directions& d = directions_[side / 2];
-    return side % 2 == 0 || d.ascending + d.descending > 1;
+    return side % 2 < directions_[side / 2].NumSides();
   }
 
   bool Descends(uint32_t side) const {
@@ -87,7 +86,8 @@ class WallFinder {
 
   uint32_t CountAt(uint32_t e) const {
     uint32_t count = 0;
-    for (uint32_t f : adjacency_.EdgeFaces(e)) count += 1 + Exists(2 * f + 1);
+    for (uint32_t f : adjacency_.EdgeFaces(e))
+      count += directions_[f].NumSides();
     return count;
   }
 
@@ -291,7 +291,7 @@ class WallFinder {
 
   // Takes out of wall_of_side_ the walls without which the surface would not be
   // closed, and those that are outside.
-  absl::Status KeepWhatClosesNothing() {
+  absl::Status KeepWallsUnlessInside() {
     DisjointSets groups(num_walls_);
     std::vector<bool> may_go(num_walls_, true);
     std::vector<bool> is_held(num_walls_, false);

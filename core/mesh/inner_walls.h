@@ -20,11 +20,12 @@ struct Directions {
   uint32_t descending = 0;
 
   bool AreBoth() const { return ascending > 0 && descending > 0; }
+  // Face f has the side 2 f and, where the payload has it more than once, the
+  // side 2 f + 1; where it has both directions, the ascending one first.
+  uint32_t NumSides() const { return ascending + descending > 1 ? 2 : 1; }
 };
 
-// Face f has the side 2 f and, where the payload has it more than once, the
-// side 2 f + 1; where it has both directions, the ascending one first. The side
-// of one of the payload's faces:
+// Of one of the payload's faces that are face `face`.
 inline uint32_t SideOf(uint32_t face, const Directions& directions,
                        bool descends) {
   return 2 * face + (descends && directions.AreBoth());
