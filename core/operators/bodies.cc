@@ -12,6 +12,7 @@
 #include "core/mesh/mesh_report.h"
 #include "core/mesh/patches.h"
 #include "core/mesh/submesh.h"
+#include "core/mesh/touching_shells.h"
 #include "core/operators/laplacian.h"
 #include "core/operators/nearest_face.h"
 #include "core/operators/scenery.h"
@@ -370,25 +371,41 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
   }
 }
 
+// Back from the parted mesh.
+void TakeWholeVertices(const std::vector<uint32_t>& whole, Body& body) {
+  body.is_parted = true;
+  for (uint32_t& v : body.vertices) v = whole[v];
+  for (auto& [one, other] : body.seams) {
+    one = whole[one];
+    other = whole[other];
+  }
+}
+
 // Rules 1 to 5.
 absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   Bodies result;
   result.anchors = Iota(mesh.mesh.NumFaces());
-  if (mesh.report.components == 1) {
+  PartedMesh parted;
+  if (mesh.report.nonmanifold_vertices > 0)
+    parted = PartTouchingShells(mesh.mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const bool is_parted = !parted.vertices.empty();
+  const TriangleMesh& shells = is_parted ? parted.mesh : mesh.mesh;
+  if (mesh.report.components == 1 && !is_parted) {
     mesh.report.bodies = 1;
     mesh.report.body_vertices = mesh.mesh.NumVertices();
     result.bodies.push_back(WholeBody(mesh, cancel));
     return result;
   }
   std::vector<Part> parts, scenery;
-  PartsOf(mesh.mesh, cancel, parts, scenery);
+  PartsOf(shells, cancel, parts, scenery);
   const bool are_shreds = AreShreds(parts, mesh.report);
   std::vector<Part> attached =
       Split(parts, are_shreds ? parts.size() : CountOfWeight(parts));
   double distance = 0;
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  MARROW_ASSIGN_OR_RETURN(parts, JoinNear(mesh.mesh, std::move(parts),
-                                          are_shreds, cancel, distance));
+  MARROW_ASSIGN_OR_RETURN(
+      parts, JoinNear(shells, std::move(parts), are_shreds, cancel, distance));
   LargestFirst(parts);
   for (Part& part : Split(parts, CountBodies(parts)))
     attached.push_back(std::move(part));
@@ -399,17 +416,20 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   }
   Note(parts, attached, distance, mesh.report);
 
-  if (parts.size() == 1 && attached.empty() && parts[0].components == 1) {
+  if (parts.size() == 1 && attached.empty() && parts[0].components == 1 &&
+      !is_parted) {
     result.bodies.push_back(WholeBody(mesh, cancel));
   } else {
     for (Part& part : parts) {
       MARROW_ASSIGN_OR_RETURN(
-          Body body, MakeBody(mesh.mesh, std::move(part), are_shreds, cancel));
+          Body body, MakeBody(shells, std::move(part), are_shreds, cancel));
       result.bodies.push_back(std::move(body));
     }
     MARROW_RETURN_IF_ERROR(
-        Attach(mesh.mesh, attached, count, distance, cancel, result));
+        Attach(shells, attached, count, distance, cancel, result));
   }
+  if (is_parted)
+    for (Body& body : result.bodies) TakeWholeVertices(parted.vertices, body);
   mesh.report.bridges = mesh.report.body_vertices = 0;
   double sum = 0;
   for (const Body& body : result.bodies) {
@@ -443,6 +463,7 @@ std::vector<uint32_t> ToWholeVertices(const Body& body,
                                       std::vector<uint32_t> own,
                                       const std::vector<uint32_t>& faces) {
   for (uint32_t& v : own) v = body.vertices[v];
+  own.erase(std::unique(own.begin(), own.end()), own.end());
   if (body.seams.empty()) return own;
   std::vector<uint32_t> corners;
   for (uint32_t f : faces)

@@ -1,10 +1,11 @@
 // Which components of a mesh are computed on together, which are segments of
 // their own, and which follow another: the one place that decides it.
 //
-// A component is what shared vertices connect, after welding. Its size is its
-// share of the area of what is not scenery (core/operators/scenery.h): however
-// large the ground that a creature stands on, it makes no difference to the
-// rules. In order:
+// A component is what shared vertices connect, after welding; but closed shells
+// that touch in vertices alone are one each (core/mesh/touching_shells.h). Its
+// size is its share of the area of what is not scenery
+// (core/operators/scenery.h): however large the ground that a creature stands
+// on, it makes no difference to the rules. In order:
 //  1. Of weight is a component of at least kWeight, or of kBodyShare of the
 //     largest if that is less, but at least kLightWeight. Where those hold less
 //     than kMainShare of the area (a creature of scales or plates, not one with
@@ -76,9 +77,12 @@ struct Body {
   // patches. Null for what is no sieve.
   std::shared_ptr<const CanonicalMesh> patched;
   std::shared_ptr<const CoarseMesh> coarse;  // of Patched(); null for most
-  std::vector<uint32_t> faces;     // own face -> the whole mesh's, ascending
-  std::vector<uint32_t> vertices;  // own vertex -> the whole mesh's, ascending
-  std::vector<Bridge> bridges;     // between its shells, own vertices
+  std::vector<uint32_t> faces;  // own face -> the whole mesh's, ascending
+  // Own vertex -> the whole mesh's, ascending; where shells that touch were
+  // parted, several may be one of these.
+  std::vector<uint32_t> vertices;
+  bool is_parted = false;
+  std::vector<Bridge> bridges;  // between its shells, own vertices
   // Vertices of the whole mesh that are one of this: the one that `vertices`
   // has, and another; ascending.
   std::vector<Bridge> seams;
@@ -105,7 +109,7 @@ struct Bodies {
   // Whether the whole mesh is one body, so that nothing need be mapped.
   bool IsWhole() const {
     return bodies.size() == 1 && bodies[0].faces.size() == anchors.size() &&
-           bodies[0].seams.empty();
+           bodies[0].seams.empty() && !bodies[0].is_parted;
   }
   // Whether what is computed on is the whole mesh.
   bool IsComputedWhole() const {

@@ -31,7 +31,8 @@ Prepared Prepare(const CanonicalMesh& canonical, const Bodies& bodies,
                     {}};
   for (const Body& body : bodies.bodies) {
     for (const auto& [u, v] : body.bridges)
-      prepared.bridges.push_back({body.vertices[u], body.vertices[v]});
+      if (body.vertices[u] != body.vertices[v])
+        prepared.bridges.push_back({body.vertices[u], body.vertices[v]});
     prepared.bridges.insert(prepared.bridges.end(), body.seams.begin(),
                             body.seams.end());
   }

@@ -273,19 +273,15 @@ absl::StatusOr<CertifiedSpectrum> CertifyDensely(
     const Eigen::SparseMatrix<double>& A, const Laplacian& laplacian, int count,
     const CancelToken& cancel) {
   const int n = static_cast<int>(A.rows());
-  MARROW_ASSIGN_OR_RETURN(const MatrixPairs all, SolveDensely(A, n, cancel));
+  MARROW_ASSIGN_OR_RETURN(MatrixPairs all, SolveDensely(A, n, cancel));
+  RemoveConstant(laplacian.M.cwiseSqrt(), all.vectors);
   CertifiedSpectrum spectrum;
   spectrum.eigenvalues = all.values.head(count);
   spectrum.eigenvalues[0] = 0;
   spectrum.eigenvectors = laplacian.M.cwiseSqrt().cwiseInverse().asDiagonal() *
                           all.vectors.leftCols(count);
   spectrum.eigenvectors.col(0).setOnes();
-  for (int k = 1; k < count; ++k) {
-    auto phi = spectrum.eigenvectors.col(k);
-    phi.array() -= laplacian.M.dot(phi);
-    phi /= std::sqrt(phi.cwiseAbs2().dot(laplacian.M));
-    FixSign(phi);
-  }
+  for (int k = 1; k < count; ++k) FixSign(spectrum.eigenvectors.col(k));
   spectrum.residuals.resize(count);
   MeasureResiduals(laplacian, 0, count, spectrum);
   int bounded = count;

@@ -181,4 +181,23 @@ absl::StatusOr<MatrixPairs> SolveForLastRows(Eigen::MatrixXd matrix, Index rows,
   return DenseSolver(std::move(matrix), rows, cancel).Solve(n);
 }
 
+// Two vectors that had shares a and b of the constant one overlap by -a b
+// without them: those with a share that matters are parted from each other.
+void RemoveConstant(Eigen::VectorXd constant, Eigen::MatrixXd& vectors) {
+  constexpr double kLeastShare = 1e-8;
+  constant.normalize();
+  std::vector<Index> mixed;
+  for (Index k = 1; k < vectors.cols(); ++k) {
+    auto v = vectors.col(k);
+    const double share = constant.dot(v);
+    v -= share * constant;
+    if (std::abs(share) > kLeastShare) {
+      for (Index other : mixed)
+        v -= vectors.col(other).dot(v) * vectors.col(other);
+      mixed.push_back(k);
+    }
+    v.normalize();
+  }
+}
+
 }  // namespace marrow

@@ -39,6 +39,11 @@ absl::StatusOr<MatrixPairs> SolveDensely(
     const Eigen::SparseMatrix<double>& matrix, int pairs,
     const CancelToken& cancel);
 
+// Makes the vectors but the first, whose pair is the constant one, orthogonal
+// to `constant`, of any length: the solver leaves that to rounding, which is
+// too much where values differ by many orders. They stay orthonormal.
+void RemoveConstant(Eigen::VectorXd constant, Eigen::MatrixXd& vectors);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_SPECTRUM_DENSE_SOLVER_H_

@@ -47,18 +47,6 @@ absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
   return problem;
 }
 
-// All that is not the constant pair is orthogonal to it, which the dense solver
-// leaves to rounding: too much where masses differ by many orders.
-void RemoveConstant(const Eigen::VectorXd& inverse_sqrt_mass,
-                    MatrixPairs& raw) {
-  const Eigen::VectorXd constant =
-      inverse_sqrt_mass.cwiseInverse().normalized();
-  for (Eigen::Index k = 1; k < raw.vectors.cols(); ++k) {
-    raw.vectors.col(k) -= constant.dot(raw.vectors.col(k)) * constant;
-    raw.vectors.col(k).normalize();
-  }
-}
-
 // Of the columns from `first` on: the entry of largest magnitude (the first,
 // where several are) is positive. The constant pair, which is known exactly, is
 // exact.
@@ -134,7 +122,7 @@ absl::StatusOr<MatrixPairs> SolveDense(const SymmetricProblem& problem,
                                        int pairs, const CancelToken& cancel) {
   MARROW_ASSIGN_OR_RETURN(MatrixPairs raw,
                           SolveDensely(problem.A, pairs, cancel));
-  RemoveConstant(problem.inverse_sqrt_mass, raw);
+  RemoveConstant(problem.inverse_sqrt_mass.cwiseInverse(), raw.vectors);
   return raw;
 }
 

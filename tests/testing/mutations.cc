@@ -72,6 +72,7 @@ class Mutator {
                                {-1, 0, 2},
                                {-2, 0, 2}},
                               2)},
+        {"grids", TouchingGrids()},
     };
     return *shapes;
   }

@@ -265,6 +265,12 @@ TriangleMesh CubeShells(const std::set<std::array<int, 3>>& cubes,
   return Together(shells);
 }
 
+TriangleMesh TouchingGrids() {
+  return Together({CubesSurface({{0, 0, 0}, {0, 1, 0}, {0, 2, 0}}, 2),
+                   CubesSurface({{1, 2, 0}, {2, 2, 0}, {3, 2, 0}}, 4),
+                   CubesSurface({{-1, 2, 0}, {-2, 2, 0}, {-3, 2, 0}}, 4)});
+}
+
 TriangleMesh LimbCross(uint32_t fineness) {
   std::set<std::array<int, 3>> cubes;
   for (int x = -1; x <= 1; ++x)

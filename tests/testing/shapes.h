@@ -36,6 +36,9 @@ TriangleMesh CubesSurface(const std::set<std::array<int, 3>>& cubes,
 // The same cubes, each with a boundary of its own: flush shells.
 TriangleMesh CubeShells(const std::set<std::array<int, 3>>& cubes,
                         int fineness);
+// A trunk of cubes and two arms on it of a grid twice as fine: shells that
+// share some vertices and no edge.
+TriangleMesh TouchingGrids();
 // A ball-like body with four limbs of different lengths: a creature of
 // `fineness`^2 squares a unit of its surface, slightly rounded.
 TriangleMesh LimbCross(uint32_t fineness);

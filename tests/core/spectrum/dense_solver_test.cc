@@ -1,6 +1,9 @@
 #include "core/spectrum/dense_solver.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
+#include <cmath>
+#include <utility>
 
 #include "core/operators/laplacian.h"
 #include "gtest/gtest.h"
@@ -66,6 +69,25 @@ TEST(DenseSolverTest, TrivialMatrices) {
     EXPECT_EQ(zero.values, Eigen::VectorXd::Zero(n));
     EXPECT_EQ(zero.vectors, Eigen::MatrixXd::Identity(n, n));
   }
+}
+
+// Rounding mixes the constant vector with those above it, where the largest
+// eigenvalue is 1e12 times the least.
+TEST(DenseSolverTest, VectorsStayOrthonormalWithoutTheConstant) {
+  const int n = 12;
+  Eigen::MatrixXd vectors =
+      SolveDensely(SymmetricForm(Icosphere(0)), n, CancelToken())->vectors;
+  const Eigen::VectorXd constant = 3 * vectors.col(0);
+  for (const auto& [k, angle] : {std::pair{1, 3e-3}, {2, 2e-2}, {7, 1e-6}})
+    vectors.applyOnTheRight(
+        0, k, Eigen::JacobiRotation<double>(std::cos(angle), std::sin(angle)));
+  ASSERT_GT(std::abs(constant.dot(vectors.col(2))), 1e-2);
+  RemoveConstant(constant, vectors);
+  vectors.col(0) = constant.normalized();
+  EXPECT_LT((vectors.transpose() * vectors - Eigen::MatrixXd::Identity(n, n))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-13);
 }
 
 TEST(DenseSolverTest, StopsWhenCancelled) {
