@@ -139,8 +139,9 @@ grpc::ServerUnaryReactor* MeshStoreService::InspectMesh(
         v1::InspectMeshResponse found;
         const absl::Status status = RunGuarded(*state->cancel(), [&] {
           auto result = Inspect(context, inspection, *state->cancel());
-          if (result.ok()) found = *std::move(result);
-          return result.status();
+          if (!result.ok()) return result.status();
+          found = *std::move(result);
+          return absl::OkStatus();
         });
         ComputePool::CountAsIdle();
         if (status.ok()) {

@@ -98,8 +98,9 @@ class JobSink : public Sink {
                   event.mutable_mesh_report());
     job_.Append(std::move(event));
     for (v1::Warning& warning : WarningsAbout(mesh.report)) {
-      *event.mutable_warning() = std::move(warning);
-      job_.Append(event);
+      v1::SegmentEvent warned;
+      *warned.mutable_warning() = std::move(warning);
+      job_.Append(std::move(warned));
     }
     return Going();
   }

@@ -88,7 +88,7 @@ absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
   if (call.interrupted()) return absl::CancelledError("interrupted");
   MARROW_ASSIGN_OR_RETURN(const std::vector<std::string> made,
                           PrepareFolder(arguments.folder));
-  const absl::Status published =
+  absl::Status published =
       PublishResults(arguments.folder, StemOf(name), files,
                      {.scope = ResultScope::kCut, .inputs = {arguments.file}});
   if (!published.ok()) {

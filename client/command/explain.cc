@@ -69,7 +69,7 @@ std::string Explain(const absl::Status& status) {
 }
 
 std::string ExplainFor(const std::string& file, const absl::Status& status) {
-  const std::string message = Explain(status);
+  std::string message = Explain(status);
   const bool about_all = ConcernsAllFiles(status);
   if (about_all || message.starts_with(file)) return message;
   return absl::StrCat(file, ": ", message);

@@ -56,6 +56,7 @@ CutNote NoteOf(const CutChoice& cut) {
 std::vector<std::string> NamesOf(const std::vector<ResultFile>& files,
                                  const std::string& last) {
   std::vector<std::string> names;
+  names.reserve(files.size() + 1);
   for (const ResultFile& file : files) names.push_back(file.name);
   names.push_back(last);
   return names;

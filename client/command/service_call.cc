@@ -25,7 +25,7 @@ ServiceCall::~ServiceCall() {
   cancellable_ = nullptr;
   // A factorisation of millions of entries may take seconds to notice that it
   // is cancelled; who pressed Ctrl-C need not wait for it.
-  if (interrupted()) connection_.release();
+  if (interrupted()) (void)connection_.release();
 }
 
 absl::Status ServiceCall::Connect(absl::Time deadline) {

@@ -59,7 +59,8 @@ float LoadScaled(const unsigned char* data, bool normalized) {
 
 float LoadCoordinate(const AccessorView& view, size_t element, int axis) {
   const int size = tinygltf::GetComponentSizeInBytes(view.component_type);
-  const unsigned char* data = view.data + element * view.stride + axis * size;
+  const unsigned char* data =
+      view.data + element * view.stride + ptrdiff_t{axis} * size;
   switch (view.component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
       return LoadScaled<int8_t>(data, view.normalized);

@@ -85,7 +85,7 @@ absl::StatusOr<PolygonMesh> ReadBinary(const std::string& path,
         corners.data(),
         bytes.data() + kHeaderBytes + size_t{kTriangleBytes} * t + kNormalBytes,
         sizeof(corners));
-    for (uint32_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < 3; ++i) {
       mesh.positions[size_t{3} * t + i] = {corners[3 * i], corners[3 * i + 1],
                                            corners[3 * i + 2]};
     }

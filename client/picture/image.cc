@@ -31,7 +31,7 @@ class SrgbTable {
   }
   uint8_t operator()(float linear) const {
     const float c = std::clamp(linear, 0.0f, 1.0f);
-    return bytes_[static_cast<size_t>(c * kSteps + 0.5f)];
+    return bytes_[std::lround(c * kSteps)];
   }
 
  private:

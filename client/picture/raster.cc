@@ -120,6 +120,7 @@ double EstimateWork(const std::vector<Vector3f>& points,
 std::vector<uint32_t> NearestFirst(const std::vector<Vector3f>& points,
                                    const std::vector<Triangle>& triangles) {
   std::vector<float> depth;
+  depth.reserve(triangles.size());
   for (const Triangle& t : triangles) {
     depth.push_back(
         std::max({points[t[0]].z(), points[t[1]].z(), points[t[2]].z()}));

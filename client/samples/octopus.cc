@@ -61,6 +61,7 @@ void AddTentacle(int tentacle, Creature& creature) {
                                                            {1.54, 0.1, 0.065},
                                                            {1.7, 0.12, 0.05}}};
   std::vector<LimbNode> nodes;
+  nodes.reserve(kStations.size());
   for (const Station& station : kStations) {
     nodes.push_back(
         {station.out * Outward(tentacle) + station.up * Vector3d::UnitY(),

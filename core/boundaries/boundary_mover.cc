@@ -221,6 +221,7 @@ absl::Status Move(const Surface& surface, const std::vector<double>& face_areas,
   const auto pairs = LinkPairs(surface.links, surface.mesh.NumFaces());
   Team team(UsualThreads());
   std::vector<Mover> movers;
+  movers.reserve(team.threads());
   for (int i = 0; i < team.threads(); ++i) movers.emplace_back(surface);
   for (int pass = 0; pass < passes; ++pass) {
     Pieces pieces(num_pieces, piece_of_face);

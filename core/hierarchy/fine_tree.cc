@@ -72,6 +72,7 @@ std::vector<uint32_t> ToFine(const std::vector<uint32_t>& vertices,
                              const CoarseMesh& coarse, const TriangleMesh& fine,
                              const std::vector<uint32_t>& faces) {
   std::vector<uint32_t> own;
+  own.reserve(vertices.size());
   for (uint32_t v : vertices) own.push_back(coarse.vertices[v]);
   return OfFaces(own, fine, faces);
 }

@@ -163,6 +163,7 @@ std::vector<FrontDistance> DistancesTo(const MapSketch& sketch,
                                        const std::vector<uint32_t>& front,
                                        const CancelToken& cancel, Team& team) {
   std::vector<StructureDistance> distances;
+  distances.reserve(structures.size());
   for (const Structure& structure : structures)
     distances.emplace_back(sketch, structure);
   std::vector<FrontDistance> result(front.size());

@@ -81,6 +81,7 @@ struct StructureDistance::Index {
     using DistanceType = double;
     using Row = Eigen::Map<const Eigen::Matrix<double, kDimensions, 1>>;
 
+    explicit Metric(const Cloud& of) : cloud(of) {}
     double evalMetric(const double* query, size_t i, size_t) const {
       return (Row(query) - Row(&cloud.rows[i * kDimensions])).squaredNorm();
     }

@@ -30,7 +30,8 @@ Initialisation InitialStructures(const Region& region, const MapSketch& sketch,
   const DiffusionMap& Phi = sketch.Phi();
   const std::vector<uint32_t> all = region.AllFaces();
   Initialisation result;
-  auto& [structures, nearest] = result;
+  std::vector<Structure>& structures = result.structures;
+  std::vector<FrontDistance>& nearest = result.nearest;
   structures = {ComputeMedialStructure(region, Phi, all, options.epsilon)};
   nearest.resize(region.NumVertices());
   std::vector<double> distance(region.NumVertices(),
@@ -109,10 +110,11 @@ struct Relaxation {
 
 // The main loop of section 3, until the bijection.
 Relaxation Relax(const Region& region, const MapSketch& sketch,
-                 Initialisation initial, const SplitOptions& options,
+                 Initialisation&& initial, const SplitOptions& options,
                  const CancelToken& cancel, Team& team) {
   Relaxation result;
-  auto& [structures, known] = initial;
+  std::vector<Structure>& structures = initial.structures;
+  std::vector<FrontDistance>& known = initial.nearest;
   std::vector<uint32_t> before;
   while (result.iterations < kMaxIterations && !cancel.IsCancelled()) {
     result.labels = CompeteFronts(region, sketch, structures, cancel,

@@ -135,7 +135,7 @@ struct Job {
   Reporter& reporter;
   Sink& sink;
 
-  operator Telling() const { return {prepared, reporter, sink}; }
+  Telling telling() const { return {prepared, reporter, sink}; }
 };
 
 // Pulls what the bodies take as a whole, reported as Stage::kSpectrum; regions

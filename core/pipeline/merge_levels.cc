@@ -71,6 +71,7 @@ absl::StatusOr<std::vector<MergeTree>> BodyTrees(const Job& job) {
 SegmentTree OneTree(const Prepared& prepared, std::vector<MergeTree>& trees) {
   if (prepared.bodies.IsComputedWhole()) return std::move(trees[0].tree);
   std::vector<const SegmentTree*> pointers;
+  pointers.reserve(trees.size());
   for (const MergeTree& tree : trees) pointers.push_back(&tree.tree);
   return PlantForest(prepared.canonical, prepared.areas, prepared.bodies,
                      pointers, BodyRoots::kNone);
@@ -91,9 +92,9 @@ absl::Status MergeLevels(const Job& job) {
   const SegmentTree& tree = whole->tree();
   for (uint32_t level = 1; level <= job.options.levels; ++level) {
     if (level > 1 && level > tree.nodes.back().level) break;
-    MARROW_RETURN_IF_ERROR(EmitLevel(job, tree, level));
+    MARROW_RETURN_IF_ERROR(EmitLevel(job.telling(), tree, level));
   }
-  return EmitTree(job, whole);
+  return EmitTree(job.telling(), whole);
 }
 
 }  // namespace marrow

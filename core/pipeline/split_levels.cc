@@ -144,11 +144,11 @@ absl::Status SplitLevels(const Job& job) {
                             }));
     MARROW_RETURN_IF_ERROR(reported);
     if (!deeper && level > 1) break;
-    MARROW_RETURN_IF_ERROR(EmitLevel(job, forest.tree(), level));
+    MARROW_RETURN_IF_ERROR(EmitLevel(job.telling(), forest.tree(), level));
     if (!deeper) break;
   }
   forest.StopAtDepth();
-  return EmitTree(job,
+  return EmitTree(job.telling(),
                   std::make_shared<const SegmentedMesh>(
                       job.workspace, job.options.split, forest.TakeTree()));
 }

@@ -11,6 +11,8 @@
 
 #include "core/spectrum/dense_kernels.h"
 
+// A tile is of so few rows and columns that an int holds any place in it.
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result,google-build-namespaces)
 namespace marrow {
 namespace {
 
@@ -299,5 +301,6 @@ constexpr DenseKernels KernelsNamed(const char* name) {
 
 }  // namespace
 }  // namespace marrow
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result,google-build-namespaces)
 
 #endif  // MARROW_CORE_SPECTRUM_DENSE_KERNELS_BODY_H_

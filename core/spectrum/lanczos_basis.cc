@@ -13,6 +13,7 @@ namespace {
 constexpr int kChunk = 256;
 // The same for all blocks of a basis.
 constexpr int kSmallChunk = 64;
+constexpr size_t kBlockEntries = size_t{kBlock} * kBlock;
 // Squared lengths below this share are rounding of what was subtracted, and
 // those below the second of other columns of the block.
 constexpr double kVanished = 1e-26;
@@ -85,7 +86,7 @@ RowMajorMatrix LanczosBasis::Project(int first, const double* W,
       for (int j = first; j < num_blocks_; ++j)
         kernels_.multiply_add(
             kBlock, kBlock, rows, {blocks_[j].data() + at, 1, kBlock}, W + at,
-            kBlock, sums[part].data() + j * kBlock * kBlock, kBlock);
+            kBlock, sums[part].data() + kBlockEntries * j, kBlock);
     });
   });
   return Sum(sums);
@@ -100,7 +101,7 @@ RowMajorMatrix LanczosBasis::SubtractAndGram(int first, const RowMajorMatrix& C,
   team_.For(kParts, [&](int part) {
     ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
       kernels_.blocks_subtract(rows, num_blocks_ - first, V.data() + first, at,
-                               C.data() + first * kBlock * kBlock, kBlock,
+                               C.data() + kBlockEntries * first, kBlock,
                                W + at);
       kernels_.multiply_add(kBlock, kBlock, rows, {W + at, 1, kBlock}, W + at,
                             kBlock, sums[part].data(), kBlock);
@@ -116,7 +117,8 @@ absl::Status LanczosBasis::SeparateLastTwo(const CancelToken& cancel) {
   std::array<double*, 2> last{Block(before), Block(before + 1)};
   std::array<std::vector<RowMajorMatrix>, 2> sums;
   for (auto& sum : sums)
-    sum.assign(kParts, RowMajorMatrix::Zero(before * kBlock, kBlock));
+    sum.assign(kParts,
+               RowMajorMatrix::Zero(Eigen::Index{before} * kBlock, kBlock));
   // What is read of a block serves both.
   team_.For(kParts, [&](int part) {
     ForChunks(n_, part, kChunk, cancel, [&](int rows, size_t at) {
@@ -124,7 +126,7 @@ absl::Status LanczosBasis::SeparateLastTwo(const CancelToken& cancel) {
         for (int w = 0; w < 2; ++w)
           kernels_.multiply_add(
               kBlock, kBlock, rows, {V[j] + at, 1, kBlock}, last[w] + at,
-              kBlock, sums[w][part].data() + j * kBlock * kBlock, kBlock);
+              kBlock, sums[w][part].data() + kBlockEntries * j, kBlock);
     });
   });
   const std::array<RowMajorMatrix, 2> C{Sum(sums[0]), Sum(sums[1])};

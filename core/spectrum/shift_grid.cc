@@ -72,7 +72,8 @@ int ShiftGrid::NextEnd() const {
 }
 
 double ShiftGrid::Guess(int wanted) const {
-  return last_shift_ + mean_distance_ * (covered_ + wanted / 2 - last_below_);
+  const int middle = covered_ + wanted / 2;
+  return last_shift_ + mean_distance_ * (middle - last_below_);
 }
 
 // Factorises below a cluster that begins at `low`, where `count` eigenvalues

@@ -230,7 +230,7 @@ void SupernodalFactor::InvertTriangle(const Supernode& node, int begin, int end,
   double triangle[kBlockColumns * kBlockColumns];
   for (int i = 0; i < count; ++i) {
     double* own = work.scaled.data() + static_cast<size_t>(i) * stride + begin;
-    std::copy_n(own, count, triangle + i * kBlockColumns);
+    std::copy_n(own, count, triangle + ptrdiff_t{i} * kBlockColumns);
     std::fill_n(own, count, 0.0);
     own[i] = 1;
   }
@@ -239,7 +239,8 @@ void SupernodalFactor::InvertTriangle(const Supernode& node, int begin, int end,
     const auto subtract = [&](int first, int last, int used, int used_end) {
       kernels_.multiply_subtract(
           last - first, columns, used_end - used,
-          {triangle + first * kBlockColumns + used, kBlockColumns, 1},
+          {triangle + ptrdiff_t{first} * kBlockColumns + used, kBlockColumns,
+           1},
           rows + static_cast<size_t>(used) * stride, stride,
           rows + static_cast<size_t>(first) * stride, stride);
     };
