@@ -43,10 +43,11 @@ class Planter {
  private:
   void AddRoot(const SegmentTree& largest) {
     SegmentNode& root = result_.nodes.emplace_back();
-    root.medial_structure =
-        ToWhole(largest.nodes[0].medial_structure, bodies_.bodies[0].vertices);
     root.faces.resize(bodies_.anchors.size());
     std::iota(root.faces.begin(), root.faces.end(), 0u);
+    root.medial_structure =
+        ToWholeVertices(bodies_.bodies[0], mesh_.mesh,
+                        largest.nodes[0].medial_structure, root.faces);
     MeasureNode(mesh_.mesh, face_areas_, mesh_.report.area, root,
                 bodies_.anchors);
   }

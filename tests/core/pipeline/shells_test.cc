@@ -311,6 +311,21 @@ TEST(BodiesTest, ArmsThatShareVerticesAloneWithTheirTrunkAreThree) {
   }
 }
 
+// The root is of all bodies, and its medial structure that of the largest.
+TEST(BodiesTest, BodiesOfTouchingShellsHaveASoundRoot) {
+  TriangleMesh other = TouchingGrids();
+  other.positions *= 1.1;
+  other.positions.rowwise() += Eigen::RowVector3d(30, 0, 0);
+  for (Method method : {Method::kPaper, Method::kMerge}) {
+    const RecordingSink run =
+        RunOn(Together({TouchingGrids(), other}), Levels(2, method));
+    EXPECT_EQ(run.mesh.report.bodies, 2u);
+    EXPECT_EQ(run.mesh.report.bridged_components, 6u);
+    ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
+                    run.mesh.report.area, true, method == Method::kMerge);
+  }
+}
+
 // Where no vertex of a leg is near to one of the trunk.
 TEST(BodiesTest, LegsOfBoxesStandInTheirTrunk) {
   TriangleMesh dog = Box({0, 0, 0}, {10, 3, 3});
