@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -39,23 +40,6 @@ Groups GroupBy(uint32_t n, DisjointSets& sets) {
   return groups;
 }
 
-// Faces by component.
-Groups Components(const TriangleMesh& mesh) {
-  DisjointSets vertices(mesh.NumVertices());
-  JoinCorners(mesh, vertices);
-  std::vector<uint32_t> place(mesh.NumVertices(), kNoIndex);
-  Groups components;
-  for (uint32_t f = 0; f < mesh.NumFaces(); ++f) {
-    uint32_t& at = place[vertices.Find(mesh.faces[f][0])];
-    if (at == kNoIndex) {
-      at = static_cast<uint32_t>(components.size());
-      components.emplace_back();
-    }
-    components[at].push_back(f);
-  }
-  return components;
-}
-
 double AreaOf(const std::vector<uint32_t>& faces,
               const std::vector<double>& areas) {
   double sum = 0;
@@ -67,6 +51,7 @@ double AreaOf(const std::vector<uint32_t>& faces,
 struct Part {
   std::vector<uint32_t> faces;  // ascending
   double share = 0;
+  double weight = 0;  // the share of all that it shares vertices with
   uint32_t components = 1;
 };
 
@@ -90,7 +75,7 @@ std::vector<Part> Split(std::vector<Part>& from, size_t first) {
 void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
              std::vector<Part>& parts, std::vector<Part>& scenery) {
   const std::vector<double> areas = FaceAreaShares(mesh);
-  Groups components = Components(mesh);
+  Groups components = FacesByComponent(mesh);
   const std::vector<bool> is_scenery = FindScenery(mesh, components, cancel);
   double sum = 0;
   for (size_t i = 0; i < components.size(); ++i) {
@@ -103,8 +88,23 @@ void PartsOf(const TriangleMesh& mesh, const CancelToken& cancel,
     for (Part& part : parts) part.share /= sum;
   else  // Nothing is there that it could be the scenery of.
     for (Part& part : Split(scenery, 0)) parts.push_back(std::move(part));
+  for (Part& part : parts) part.weight = part.share;
   LargestFirst(parts);
   LargestFirst(scenery);
+}
+
+// Shells that were parted weigh as much as they did as one component, which
+// they stay beside. `whole` is the mesh before, with the same faces.
+void WeighTogether(const TriangleMesh& whole, std::vector<Part>& parts) {
+  DisjointSets vertices(whole.NumVertices());
+  JoinCorners(whole, vertices);
+  std::vector<double> weight(whole.NumVertices(), 0);
+  const auto component = [&](const Part& part) {
+    return vertices.Find(whole.faces[part.faces.front()][0]);
+  };
+  for (const Part& part : parts) weight[component(part)] += part.share;
+  for (Part& part : parts) part.weight = weight[component(part)];
+  std::ranges::stable_sort(parts, std::ranges::greater(), &Part::weight);
 }
 
 // Open is what has at most so many faces an edge of its rim.
@@ -113,23 +113,26 @@ constexpr uint64_t kFacesOfRimEdge = 3;
 // Joining more takes longer than an answer may.
 constexpr size_t kMostShreds = 250'000;
 
-// Of rule 2. REQUIRES: largest first.
+// Of rule 2.
 bool AreShreds(const std::vector<Part>& parts, const MeshReport& report) {
+  const auto is_main = [](const Part& part) {
+    return part.weight >= kMainShare;
+  };
   return parts.size() >= kFewestShreds && parts.size() <= kMostShreds &&
-         parts[0].share < kMainShare &&
+         std::ranges::none_of(parts, is_main) &&
          report.faces <= kFacesOfShred * report.components &&
          kFacesOfRimEdge * report.boundary_edges >= report.faces;
 }
 
-// Rule 1. REQUIRES: largest first. The number of components of weight.
+// Rule 1. REQUIRES: heaviest first. The number of components of weight.
 size_t CountOfWeight(const std::vector<Part>& parts) {
   auto count_from = [&](double share) {
     size_t count = 1;
-    while (count < parts.size() && parts[count].share >= share) ++count;
+    while (count < parts.size() && parts[count].weight >= share) ++count;
     return count;
   };
   const size_t heavy = count_from(
-      std::clamp(kBodyShare * parts[0].share, kLightWeight, kWeight));
+      std::clamp(kBodyShare * parts[0].weight, kLightWeight, kWeight));
   double sum = 0;
   for (size_t i = 0; i < heavy; ++i) sum += parts[i].share;
   return sum >= kMainShare ? heavy : count_from(kLightWeight);
@@ -387,7 +390,8 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   result.anchors = Iota(mesh.mesh.NumFaces());
   PartedMesh parted;
   if (mesh.report.nonmanifold_vertices > 0)
-    parted = PartTouchingShells(mesh.mesh, cancel);
+    parted = PartTouchingShells(mesh.mesh, FaceAreaShares(mesh.mesh), kWeight,
+                                cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
   const bool is_parted = !parted.vertices.empty();
   const TriangleMesh& shells = is_parted ? parted.mesh : mesh.mesh;
@@ -399,6 +403,7 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   }
   std::vector<Part> parts, scenery;
   PartsOf(shells, cancel, parts, scenery);
+  if (is_parted) WeighTogether(mesh.mesh, parts);
   const bool are_shreds = AreShreds(parts, mesh.report);
   std::vector<Part> attached =
       Split(parts, are_shreds ? parts.size() : CountOfWeight(parts));

@@ -2,10 +2,10 @@
 // their own, and which follow another: the one place that decides it.
 //
 // A component is what shared vertices connect, after welding; but closed shells
-// that touch in vertices alone are one each (core/mesh/touching_shells.h). Its
-// size is its share of the area of what is not scenery
-// (core/operators/scenery.h): however large the ground that a creature stands
-// on, it makes no difference to the rules. In order:
+// of kWeight that touch in vertices alone are one each, and weigh together
+// (core/mesh/touching_shells.h). Its size is its share of the area of what is
+// not scenery (core/operators/scenery.h): however large the ground that a
+// creature stands on, it makes no difference to the rules. In order:
 //  1. Of weight is a component of at least kWeight, or of kBodyShare of the
 //     largest if that is less, but at least kLightWeight. Where those hold less
 //     than kMainShare of the area (a creature of scales or plates, not one with

@@ -14,7 +14,7 @@
 namespace marrow {
 
 // Changes whenever the same mesh may give other bytes.
-inline constexpr char kSolverRevision[] = "slicing/7";
+inline constexpr char kSolverRevision[] = "slicing/8";
 
 // What the residual ||L phi - lambda M phi|| of a pair, in the M^-1 norm, may
 // be in units of max(lambda, lambda_1). Segmentations are the same at the first

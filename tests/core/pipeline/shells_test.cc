@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "core/base/disjoint_sets.h"
-#include "core/mesh/components.h"
 #include "tests/testing/creature_mesh.h"
 #include "tests/testing/invariants.h"
 #include "tests/testing/run.h"
@@ -290,40 +289,6 @@ TriangleMesh Box(const Eigen::RowVector3d& low,
     box.faces.push_back({a, c, d});
   }
   return box;
-}
-
-TEST(BodiesTest, ArmsThatShareVerticesAloneWithTheirTrunkAreThree) {
-  const TriangleMesh mesh = TouchingGrids();
-  DisjointSets sets(mesh.NumVertices());
-  JoinCorners(mesh, sets);
-  std::vector<uint32_t> shells;
-  for (const Triangle& face : mesh.faces) shells.push_back(sets.Find(face[0]));
-  for (Method method : {Method::kPaper, Method::kMerge}) {
-    const RecordingSink run = RunOn(mesh, Levels(1, method));
-    EXPECT_EQ(run.mesh.report.components, 1u);
-    EXPECT_EQ(run.mesh.report.bridged_components, 3u);
-    if (method == Method::kMerge)
-      EXPECT_LE(RandIndexDifference(run.levels[0].face_labels, shells), 0.05);
-    ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
-                    run.mesh.report.area, true, method == Method::kMerge);
-    ExpectSoundSkeleton(run.mesh.mesh, Adjacency(run.mesh.mesh),
-                        run.levels[0].tree, 1, run.levels[0].skeleton);
-  }
-}
-
-// The root is of all bodies, and its medial structure that of the largest.
-TEST(BodiesTest, BodiesOfTouchingShellsHaveASoundRoot) {
-  TriangleMesh other = TouchingGrids();
-  other.positions *= 1.1;
-  other.positions.rowwise() += Eigen::RowVector3d(30, 0, 0);
-  for (Method method : {Method::kPaper, Method::kMerge}) {
-    const RecordingSink run =
-        RunOn(Together({TouchingGrids(), other}), Levels(2, method));
-    EXPECT_EQ(run.mesh.report.bodies, 2u);
-    EXPECT_EQ(run.mesh.report.bridged_components, 6u);
-    ExpectSoundTree(run.mesh.mesh, Adjacency(run.mesh.mesh), run.tree,
-                    run.mesh.report.area, true, method == Method::kMerge);
-  }
 }
 
 // Where no vertex of a leg is near to one of the trunk.
