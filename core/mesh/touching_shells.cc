@@ -68,6 +68,7 @@ PartedMesh PartTouchingShells(const TriangleMesh& mesh,
   parted.mesh.faces = mesh.faces;
   std::vector<uint32_t> around;
   for (uint32_t v = 0; v < mesh.NumVertices(); ++v) {
+    if (cancel.IsCancelled()) return {};
     ShellsAround(adjacency, shells, v, around);
     const auto first = static_cast<uint32_t>(parted.vertices.size());
     parted.vertices.insert(parted.vertices.end(),

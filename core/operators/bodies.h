@@ -78,10 +78,10 @@ struct Body {
   std::shared_ptr<const CanonicalMesh> patched;
   std::shared_ptr<const CoarseMesh> coarse;  // of Patched(); null for most
   std::vector<uint32_t> faces;  // own face -> the whole mesh's, ascending
-  // Own vertex -> the whole mesh's, ascending; where shells that touch were
-  // parted, several may be one of these.
+  // Own vertex -> the whole mesh's, ascending; the same for several where
+  // shells that touch were parted.
   std::vector<uint32_t> vertices;
-  bool is_parted = false;
+  bool is_parted = false;       // where any of the whole mesh's shells were
   std::vector<Bridge> bridges;  // between its shells, own vertices
   // Vertices of the whole mesh that are one of this: the one that `vertices`
   // has, and another; ascending.

@@ -9,6 +9,14 @@
 
 namespace marrow {
 
+SegmentationOptions Levels(uint32_t levels, Method method) {
+  SegmentationOptions options;
+  options.method = method;
+  options.eigen_pairs = 100;
+  options.levels = levels;
+  return options;
+}
+
 RecordingSink RunOn(const TriangleMesh& mesh,
                     const SegmentationOptions& options) {
   RecordingSink sink;

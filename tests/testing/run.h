@@ -11,6 +11,9 @@
 
 namespace marrow {
 
+// So many levels of 100 pairs, all else at its default but the method.
+SegmentationOptions Levels(uint32_t levels, Method method = Method::kPaper);
+
 // Encodes, solves and segments. Fails the test where Run() fails.
 RecordingSink RunOn(const TriangleMesh& mesh,
                     const SegmentationOptions& options);

@@ -22,14 +22,6 @@
 namespace marrow {
 namespace {
 
-SegmentationOptions Levels(uint32_t levels, Method method = Method::kPaper) {
-  SegmentationOptions options;
-  options.method = method;
-  options.eigen_pairs = 100;
-  options.levels = levels;
-  return options;
-}
-
 double Diagonal(const TriangleMesh& mesh) {
   return (mesh.positions.colwise().maxCoeff() -
           mesh.positions.colwise().minCoeff())

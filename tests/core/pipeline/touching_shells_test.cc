@@ -12,14 +12,6 @@
 namespace marrow {
 namespace {
 
-SegmentationOptions Levels(uint32_t levels, Method method = Method::kPaper) {
-  SegmentationOptions options;
-  options.method = method;
-  options.eigen_pairs = 100;
-  options.levels = levels;
-  return options;
-}
-
 TEST(TouchingShellsTest, ArmsThatShareVerticesAloneWithTheirTrunkAreThree) {
   const TriangleMesh mesh = TouchingGrids();
   DisjointSets sets(mesh.NumVertices());
