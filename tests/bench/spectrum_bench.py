@@ -1,7 +1,8 @@
 """./dev bench spectrum: SciPy, Spectra and Marrow on the same matrices.
 
 Every run is a process of its own, and the solvers take turns. The table goes
-between two markers in docs/performance.md.
+between two markers in docs/performance.md, as far as it is known after every
+size, so that what hours have measured is there when the rest is interrupted.
 """
 
 import argparse
@@ -60,7 +61,12 @@ def arguments(words):
                         help="runs of which the median is taken (5); one, where "
                         "it takes a minute")
     parser.add_argument("--limit", type=float, default=600, metavar="SECONDS",
-                        help="a run that takes longer is ended (600)")
+                        help="a run that takes longer is ended (600), and one "
+                        "that must take longer, as it did for fewer vertices, "
+                        "is not begun")
+    parser.add_argument("--append", action="store_true",
+                        help="keep the tables that are in the document, and "
+                        "add this one below them")
     parser.add_argument("--output", metavar="FILE",
                         default=str(ROOT / "docs/performance.md"),
                         help="the document with the markers; - prints the table "
@@ -114,6 +120,7 @@ class Bench:
         self.options = options
         self.core, self.probe = best_core()
         self.too_slow = set()
+        self.quickest = {}  # (solver, pairs) -> (vertices, seconds)
 
     def command(self, solver, folder, pairs):
         if solver.startswith("scipy"):
@@ -121,8 +128,16 @@ class Bench:
                     {**self.core, **threads(solver[-1])})
         return ([self.options.bench, "solve", solver, folder, str(pairs)], {})
 
-    def once(self, solver, folder, pairs):
-        if (solver, pairs) in self.too_slow:
+    def must_be_too_slow(self, run_of, vertices):
+        """Whether a run takes too long even if its time only grows as fast as
+        the number of vertices, which is less than any of the solvers' does."""
+        before, seconds = self.quickest.get(run_of, (1, 0))
+        return (run_of in self.too_slow or
+                seconds * vertices / before > self.options.limit)
+
+    def once(self, solver, folder, vertices, pairs):
+        run_of = solver, pairs
+        if self.must_be_too_slow(run_of, vertices):
             return None
         command, environment = self.command(solver, folder, pairs)
         try:
@@ -132,17 +147,19 @@ class Bench:
             result = None
         if result is None:
             # Larger meshes take longer still.
-            self.too_slow.add((solver, pairs))
+            self.too_slow.add(run_of)
+        elif vertices != self.quickest.get(run_of, (0, 0))[0]:
+            self.quickest[run_of] = vertices, result["seconds"]
         return result
 
-    def compare(self, folder, pairs):
+    def compare(self, folder, vertices, pairs):
         """Solver -> its runs, the solvers taking turns."""
         runs = {solver: [] for solver in self.options.solvers}
         for turn in range(self.options.repeats):
             for solver, results in runs.items():
                 if turn > 0 and (not results or results[0]["seconds"] > 60):
                     continue
-                result = self.once(solver, folder, pairs)
+                result = self.once(solver, folder, vertices, pairs)
                 if result is None:
                     continue
                 results.append(result)
@@ -151,7 +168,7 @@ class Bench:
         return runs
 
     def rows(self, folder, problem, pairs):
-        runs = self.compare(folder, pairs)
+        runs = self.compare(folder, problem["vertices"], pairs)
         medians = {solver: statistics.median(r["seconds"] for r in results)
                    for solver, results in runs.items() if results}
         reference = next((runs[s][0]["eigenvalues"] for s in runs
@@ -215,7 +232,8 @@ def machine(bench):
     with open("/proc/meminfo", encoding="utf-8") as file:
         gibibytes = int(file.readline().split()[1]) / 2**20
     commit = output_of("git", "rev-parse", "--short", "HEAD") or "unknown"
-    if output_of("git", "status", "--porcelain", "--untracked-files=no"):
+    if output_of("git", "status", "--porcelain", "--untracked-files=no", "--",
+                 ".", ":!docs"):
         commit += " with changes"
     compiler = output_of("c++", "-dumpfullversion")
     probe = bench.probe
@@ -226,7 +244,8 @@ def machine(bench):
             f"{probe['blas']} for {probe['core']}, the quickest there.")
 
 
-def table(options):
+def tables(options):
+    """The table with the rows of the first size, of the first two, and so on."""
     bench = Bench(options)
     lines = [machine(bench), "", line(HEADER), line(["---"] * len(HEADER))]
     for size in options.sizes:
@@ -239,33 +258,43 @@ def table(options):
                         problem["vertices"] > MANY_PAIRS_VERTICES):
                     continue
                 lines += map(line, bench.rows(folder, problem, pairs))
-    return "\n".join(lines)
+        yield "\n".join(lines)
 
 
-def publish(path, text):
-    """Puts `text` between the markers of a document."""
-    document = pathlib.Path(path)
-    before, found, rest = document.read_text("utf-8").partition(BEGIN)
-    _, found_too, after = rest.partition(END)
-    if not found or not found_too:
-        sys.exit(f"./dev bench spectrum: {path} lacks the lines\n"
-                 f"{BEGIN}\n{END}\nbetween which the table goes")
-    document.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}", "utf-8")
+class Document:
+    """One with the two markers between which tables go."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        text = self.path.read_text("utf-8")
+        self.before, found, rest = text.partition(BEGIN)
+        self.tables, found_too, self.after = rest.partition(END)
+        if not found or not found_too:
+            sys.exit(f"./dev bench spectrum: {path} lacks the lines\n"
+                     f"{BEGIN}\n{END}\nbetween which the table goes")
+
+    def write(self, tables):
+        whole = self.path.with_name(self.path.name + ".new")
+        whole.write_text(f"{self.before}{BEGIN}\n\n{tables}\n\n{END}{self.after}",
+                         "utf-8")
+        whole.replace(self.path)
 
 
 def main(words):
     options = arguments(words)
+    document = None if options.output == "-" else Document(options.output)
+    kept = (f"{document.tables.strip()}\n\n"
+            if document and options.append else "")
+    text = ""
     try:
-        text = table(options)
+        for text in tables(options):
+            if document:
+                document.write(kept + text)
     except RuntimeError as error:
         sys.exit(f"./dev bench spectrum: {error}")
     except KeyboardInterrupt:
         sys.exit(130)
-    if options.output == "-":
-        print(text)
-    else:
-        publish(options.output, text)
-        print(f"-- the table is in {options.output}")
+    print(f"-- the table is in {options.output}" if document else text)
 
 
 if __name__ == "__main__":

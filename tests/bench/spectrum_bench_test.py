@@ -54,6 +54,26 @@ class SpectrumBenchTest(unittest.TestCase):
         self.assertEqual(row[4], "not run")
         self.assertIn(("marrow", 10), bench.too_slow)
 
+    def test_a_run_that_must_take_too_long_is_not_begun(self):
+        options = spectrum_bench.arguments(["--limit", "9", "--bench", "/absent"])
+        bench = spectrum_bench.Bench(options)
+        bench.quickest["marrow", 10] = 1000, 1.0
+        self.assertFalse(bench.must_be_too_slow(("marrow", 10), 8999))
+        self.assertFalse(bench.must_be_too_slow(("strict", 10), 9001))
+        self.assertIsNone(bench.once("marrow", ".", 9001, 10))
+
+    def test_tables_are_kept_where_one_is_appended(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "performance.md"
+            path.write_text(DOCUMENT, "utf-8")
+            spectrum_bench.main(
+                ["--sizes", "1000,2500", "-k", "10", "--repeats", "1", "--bench",
+                 BENCH, "--solvers", "marrow", "--append", "--output", str(path)])
+            text = path.read_text("utf-8")
+            self.assertEqual(os.listdir(folder), [path.name])
+        self.assertIn(f"{spectrum_bench.BEGIN}\n\nold\n\nMeasured on", text)
+        self.assertEqual(text.count("| humanoid"), 2)
+
     def test_failures_say_what_to_do(self):
         for words in (["--solvers", "arpack"], ["--sizes", "many"]):
             with self.assertRaises(SystemExit), open(
@@ -64,7 +84,7 @@ class SpectrumBenchTest(unittest.TestCase):
             spectrum_bench.run([BENCH, "problem", ".", "0", "nowhere.off"])
         with tempfile.NamedTemporaryFile() as file:
             with self.assertRaisesRegex(SystemExit, "lacks the lines"):
-                spectrum_bench.publish(file.name, "table")
+                spectrum_bench.Document(file.name)
 
 
 if __name__ == "__main__":
