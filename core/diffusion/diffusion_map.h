@@ -22,7 +22,7 @@ using DiffusionMap =
 
 // Eq. 10: t of a region that has `area_share` of the mesh's area. `slowest` is
 // the first eigenvalue besides that of the constant pair, or what
-// core/diffusion/shell_scale.h says.
+// core/diffusion/slowest_mode.h says.
 double TimeScale(double slowest, double area_share);
 
 // The number of pairs besides the constant one with e^(-lambda t) > delta, at

@@ -63,7 +63,7 @@ struct PulledPairs {
   // Those beyond are at hand only because others wanted them: where answers
   // depended on them, they would depend on the cache.
   uint32_t usable = 0;
-  // What the time scale goes by (core/diffusion/shell_scale.h); 0 where that is
+  // What the time scale goes by (core/diffusion/slowest_mode.h); 0 where that is
   // the first eigenvalue.
   double slowest = 0;
 

@@ -70,8 +70,8 @@ PreparedBody::PreparedBody(const Prepared& prepared, const Body& body,
       share_(body.share),
       most_pairs_(std::min(most_pairs, body.Computed().mesh.NumVertices() - 1)),
       own_(std::move(own)),
-      scale_(body.Computed().mesh, own_ ? own_->areas : prepared.areas,
-             bridges),
+      slowest_(body.Computed().mesh, own_ ? own_->areas : prepared.areas,
+               bridges),
       stream_(std::move(stream)),
       pulled_{std::make_shared<const EigenPairs>(), 0},
       context_{body.Computed().mesh,
@@ -108,14 +108,12 @@ absl::Status PreparedBody::FindSlowest(const CancelToken& cancel,
                                        const ProgressCallback& progress) {
   if (pulled_.slowest > 0) return absl::OkStatus();
   const auto& pairs = pulled_.pairs;
-  // One more tells whether the last is one of a cluster.
-  const uint32_t wanted = scale_.empty() ? 2 : ShellScale::kPairs + 2;
-  while (pairs->NumPairs() < wanted && stream_ != nullptr) {
+  while (!slowest_.IsKnownFrom(*pairs) && stream_ != nullptr) {
     const double bound =
         pairs->NumPairs() > 1 ? pairs->eigenvalues[pairs->NumPairs() - 1] : 0;
     MARROW_RETURN_IF_ERROR(PullUpTo(bound, cancel, progress));
   }
-  if (pairs->NumPairs() > 1) pulled_.slowest = scale_.Slowest(*pairs);
+  if (pairs->NumPairs() > 1) pulled_.slowest = slowest_.Of(*pairs);
   return absl::OkStatus();
 }
 

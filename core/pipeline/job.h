@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
-#include "core/diffusion/shell_scale.h"
+#include "core/diffusion/slowest_mode.h"
 #include "core/hierarchy/segment_tree.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/canonical_mesh.h"
@@ -99,7 +99,7 @@ class PreparedBody {
   const double share_;
   const uint32_t most_pairs_;
   const std::shared_ptr<const Own> own_;
-  const ShellScale scale_;
+  const SlowestMode slowest_;
   std::unique_ptr<EigenPairStream> stream_;  // null once it has ended
   PulledPairs pulled_;
   const SplitContext context_;
