@@ -51,6 +51,7 @@ struct MeshReport {
   double bridging_distance = 0;      // how near those have to be
   uint64_t attached_components = 0;  // that take the nearest part's label
   uint64_t attached_faces = 0;       // of those
+  uint64_t worn_components = 0;      // whose faces take the labels beneath them
   uint64_t body_vertices = 0;        // that are computed on
   uint64_t coarse_vertices = 0;      // of those, on coarse meshes
   double area = 0;  // inf or 0 where it leaves the range of a double

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -14,8 +13,8 @@
 #include "core/mesh/patches.h"
 #include "core/mesh/submesh.h"
 #include "core/mesh/touching_shells.h"
+#include "core/operators/attachment.h"
 #include "core/operators/laplacian.h"
-#include "core/operators/nearest_face.h"
 #include "core/operators/scenery.h"
 #include "core/operators/seams.h"
 
@@ -53,6 +52,7 @@ struct Part {
   double share = 0;
   double weight = 0;  // the share of all that it shares vertices with
   uint32_t components = 1;
+  bool is_worn = false;
 };
 
 void LargestFirst(std::vector<Part>& parts) {
@@ -159,6 +159,48 @@ double BoxDiagonal(const TriangleMesh& mesh,
   return (high - low).stableNorm();
 }
 
+// Of rule 2. `main` is made of the parts.
+double NearDistance(const TriangleMesh& mesh, const std::vector<Part>& parts,
+                    const Submesh& main, bool are_shreds) {
+  double widest = 0, sum = 0;
+  for (const Part& part : parts) {
+    const double breadth = BoxDiagonal(mesh, part.faces);
+    widest = std::max(widest, breadth);
+    sum += breadth / static_cast<double>(parts.size());
+  }
+  return std::min(BridgingDistance(main.canonical.mesh),
+                  are_shreds ? kShredGap * sum : kBridgedGap * widest);
+}
+
+// Rule 2a: takes out of the parts of weight those that are worn.
+absl::StatusOr<std::vector<Part>> TakeWorn(const TriangleMesh& mesh,
+                                           const CancelToken& cancel,
+                                           std::vector<Part>& parts) {
+  std::vector<Part> worn, left;
+  if (parts.size() == 1) return worn;
+  LargestFirst(parts);
+  const Submesh main = ExtractFaces(mesh, AllFacesOf(parts), cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  const std::vector<uint32_t> all = AllFacesOf(parts);
+  Groups faces;  // of main
+  for (const Part& part : parts) {
+    std::vector<uint32_t>& own = faces.emplace_back();
+    for (uint32_t f : part.faces)
+      own.push_back(static_cast<uint32_t>(
+          std::lower_bound(all.begin(), all.end(), f) - all.begin()));
+  }
+  MARROW_ASSIGN_OR_RETURN(
+      const std::vector<bool> is_worn,
+      FindWorn(main.canonical.mesh, faces,
+               NearDistance(mesh, parts, main, false), cancel));
+  for (size_t p = 0; p < parts.size(); ++p) {
+    parts[p].is_worn = is_worn[p];
+    (is_worn[p] ? worn : left).push_back(std::move(parts[p]));
+  }
+  parts = std::move(left);
+  return worn;
+}
+
 // Rule 2: joins the parts that bridges within the distance connect.
 absl::StatusOr<std::vector<Part>> JoinNear(const TriangleMesh& mesh,
                                            std::vector<Part> parts,
@@ -167,15 +209,7 @@ absl::StatusOr<std::vector<Part>> JoinNear(const TriangleMesh& mesh,
                                            double& distance) {
   const Submesh main = ExtractFaces(mesh, AllFacesOf(parts), cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
-  distance = BridgingDistance(main.canonical.mesh);
-  double widest = 0, sum = 0;
-  for (const Part& part : parts) {
-    const double breadth = BoxDiagonal(mesh, part.faces);
-    widest = std::max(widest, breadth);
-    sum += breadth / static_cast<double>(parts.size());
-  }
-  distance =
-      std::min(distance, are_shreds ? kShredGap * sum : kBridgedGap * widest);
+  distance = NearDistance(mesh, parts, main, are_shreds);
   std::vector<uint32_t> part_of_vertex(mesh.NumVertices(), kNoIndex);
   for (uint32_t p = 0; p < parts.size(); ++p)
     for (uint32_t f : parts[p].faces)
@@ -207,35 +241,6 @@ size_t CountBodies(const std::vector<Part>& parts) {
          parts[count].share >= kBodyShare * parts[0].share)
     ++count;
   return count;
-}
-
-// Rule 4, to the first `count` bodies: the others are scenery. `near` is the
-// bridging distance.
-absl::Status Attach(const TriangleMesh& mesh, const std::vector<Part>& attached,
-                    size_t count, double near, const CancelToken& cancel,
-                    Bodies& bodies) {
-  if (attached.empty()) return absl::OkStatus();
-  std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
-  std::vector<bool> is_left(mesh.NumFaces(), true);
-  for (size_t b = 0; b < count; ++b) {
-    const std::vector<uint32_t>& faces = bodies.bodies[b].faces;
-    for (size_t i = faces.size(); i-- > 0;) {
-      is_left[faces[i]] = false;
-      for (uint32_t v : mesh.faces[faces[i]]) first_face[v] = faces[i];
-    }
-  }
-  const NearestFace faces(mesh, first_face, is_left, near);
-  for (const Part& part : attached) {
-    double least = std::numeric_limits<double>::infinity();
-    uint32_t nearest = bodies.bodies[0].faces[0];
-    const auto improve = [&](size_t i) {
-      for (uint32_t v : mesh.faces[part.faces[i]])
-        faces.Improve(v, least, nearest);
-    };
-    MARROW_RETURN_IF_ERROR(ForEachIndex(part.faces.size(), cancel, improve));
-    for (uint32_t f : part.faces) bodies.anchors[f] = nearest;
-  }
-  return absl::OkStatus();
 }
 
 // Vertices that are sewn together become one, where the least of them is.
@@ -366,12 +371,27 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
   report.bridged_components = 0;
   report.attached_components = 0;
   report.attached_faces = 0;
+  report.worn_components = 0;
   for (const Part& part : bodies)
     report.bridged_components += part.components > 1 ? part.components : 0;
   for (const Part& part : attached) {
-    report.attached_components += part.components;
+    (part.is_worn ? report.worn_components : report.attached_components) +=
+        part.components;
     report.attached_faces += part.faces.size();
   }
+}
+
+// Rule 4, to the first `count` bodies: the others are scenery. `near` is the
+// bridging distance.
+absl::Status AttachRest(const TriangleMesh& mesh, std::vector<Part>& attached,
+                        size_t count, double near, const CancelToken& cancel,
+                        Bodies& bodies) {
+  std::vector<const std::vector<uint32_t>*> faces;
+  for (size_t b = 0; b < count; ++b) faces.push_back(&bodies.bodies[b].faces);
+  std::vector<Attachment> attachments;
+  for (Part& part : attached)
+    attachments.push_back({std::move(part.faces), part.is_worn});
+  return Attach(mesh, faces, attachments, near, cancel, bodies.anchors);
 }
 
 // Back from the parted mesh.
@@ -409,6 +429,11 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
       Split(parts, are_shreds ? parts.size() : CountOfWeight(parts));
   double distance = 0;
   MARROW_RETURN_IF_ERROR(cancel.Check());
+  if (!are_shreds) {
+    MARROW_ASSIGN_OR_RETURN(std::vector<Part> worn,
+                            TakeWorn(shells, cancel, parts));
+    std::move(worn.begin(), worn.end(), std::back_inserter(attached));
+  }
   MARROW_ASSIGN_OR_RETURN(
       parts, JoinNear(shells, std::move(parts), are_shreds, cancel, distance));
   LargestFirst(parts);
@@ -431,7 +456,7 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
       result.bodies.push_back(std::move(body));
     }
     MARROW_RETURN_IF_ERROR(
-        Attach(shells, attached, count, distance, cancel, result));
+        AttachRest(shells, attached, count, distance, cancel, result));
   }
   if (is_parted)
     for (Body& body : result.bodies) TakeWholeVertices(parted.vertices, body);
@@ -453,48 +478,6 @@ Bodies FindBodies(CanonicalMesh& mesh, const CancelToken& cancel) {
   if (!result.ok() || !Patch(cancel, *result).ok()) return {};
   CoarsenLarge(cancel, *result, mesh.report);
   return *std::move(result);
-}
-
-std::vector<bool> PatchesOf(const Body& body) {
-  if (body.patched == nullptr) return {};
-  std::vector<bool> is_patch(body.Computed().mesh.NumFaces(), true);
-  for (uint32_t f = 0; f < body.faces.size(); ++f)
-    is_patch[body.coarse == nullptr ? f : body.coarse->coarse_face[f]] = false;
-  return is_patch;
-}
-
-std::vector<uint32_t> ToWholeVertices(const Body& body,
-                                      const TriangleMesh& whole,
-                                      std::vector<uint32_t> own,
-                                      const std::vector<uint32_t>& faces) {
-  for (uint32_t& v : own) v = body.vertices[v];
-  own.erase(std::unique(own.begin(), own.end()), own.end());
-  if (body.seams.empty()) return own;
-  std::vector<uint32_t> corners;
-  for (uint32_t f : faces)
-    corners.insert(corners.end(), whole.faces[f].begin(), whole.faces[f].end());
-  std::sort(corners.begin(), corners.end());
-  const auto has = [&](uint32_t v) {
-    return std::binary_search(corners.begin(), corners.end(), v);
-  };
-  for (uint32_t& v : own) {
-    if (has(v)) continue;
-    auto seam =
-        std::lower_bound(body.seams.begin(), body.seams.end(), Bridge{v, 0});
-    for (; seam != body.seams.end() && (*seam)[0] == v; ++seam)
-      if (has((*seam)[1])) break;
-    if (seam != body.seams.end() && (*seam)[0] == v) v = (*seam)[1];
-  }
-  std::sort(own.begin(), own.end());
-  own.erase(std::unique(own.begin(), own.end()), own.end());
-  return own;
-}
-
-uint32_t PairsOfBody(const Body& body, uint32_t count) {
-  constexpr uint32_t kLeast = 60;
-  // Not one more for what rounding adds to the share.
-  const double share = std::ceil(body.share * count - 1e-6);
-  return std::min(count, std::max(kLeast, static_cast<uint32_t>(share)));
 }
 
 }  // namespace marrow

@@ -10,6 +10,9 @@
 //     largest if that is less, but at least kLightWeight. Where those hold less
 //     than kMainShare of the area (a creature of scales or plates, not one with
 //     a body under its hair), of at least kLightWeight; the largest always is.
+//     A component of weight that lies all over on larger ones, within the
+//     distance of rule 2, is worn (core/operators/attachment.h): it would be
+//     cut where it is, not where they are.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
 //     weight, nor than kBridgedGap of the widest (a row of creatures is wide,
 //     and no creature for that), are one body, through any number of others. A
@@ -27,8 +30,10 @@
 //     child of the root, if there are several; of the kMaxBodies largest.
 //  4. Whatever is left, an eye, a strap, a speck, is attached: a component, or
 //     a body that is too small for rule 3, has at every level the label of the
-//     face nearest to it by points (surface_points.h). It enters no operator,
-//     so a mesh with specks is segmented exactly as without.
+//     face in the midst of where it is nearest to the bodies, by points
+//     (surface_points.h); each face of what is worn that of the face nearest
+//     to it. It enters no operator, so a mesh with specks, or in clothes, is
+//     segmented exactly as without.
 //  5. Scenery is a body each, that counts for kSceneryShare of the largest.
 //     Nothing is attached to it.
 //  6. The small holes of a sieve, a body that takes kSievePatches faces a face
@@ -43,13 +48,11 @@
 #define MARROW_CORE_OPERATORS_BODIES_H_
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
-#include "core/mesh/coarse_mesh.h"
-#include "core/operators/bridges.h"
+#include "core/operators/body.h"
 
 namespace marrow {
 
@@ -69,41 +72,12 @@ inline constexpr double kSceneryShare = 0.05;
 inline constexpr uint32_t kLargeBody = 80'000;
 inline constexpr uint32_t kCoarseVertices = 40'000;
 
-struct Body {
-  // A submesh, its shells sewn, or, where there is one component, the whole
-  // mesh itself, which must then outlive this.
-  std::shared_ptr<const CanonicalMesh> canonical;
-  // It with its holes patched: the same vertices, the same faces, and then the
-  // patches. Null for what is no sieve.
-  std::shared_ptr<const CanonicalMesh> patched;
-  std::shared_ptr<const CoarseMesh> coarse;  // of Patched(); null for most
-  std::vector<uint32_t> faces;  // own face -> the whole mesh's, ascending
-  // Own vertex -> the whole mesh's, ascending; the same for several where
-  // shells that touch were parted.
-  std::vector<uint32_t> vertices;
-  bool is_parted = false;       // where any of the whole mesh's shells were
-  std::vector<Bridge> bridges;  // between its shells, own vertices
-  // Vertices of the whole mesh that are one of this: the one that `vertices`
-  // has, and another; ascending.
-  std::vector<Bridge> seams;
-  // Of the area of all bodies, scenery counting as rule 5 says.
-  double share = 1;
-
-  const CanonicalMesh& Patched() const {
-    return patched == nullptr ? *canonical : *patched;
-  }
-  // What is computed on.
-  const CanonicalMesh& Computed() const {
-    return coarse == nullptr ? Patched() : coarse->canonical;
-  }
-};
-
 // Immutable once built.
 struct Bodies {
   std::vector<Body>
       bodies;  // by falling area, then least face, scenery last; not empty
   // Face of the whole mesh -> itself where a body has it, else the face of a
-  // body whose labels it takes.
+  // body whose labels it takes (rule 4).
   std::vector<uint32_t> anchors;
 
   // Whether the whole mesh is one body, so that nothing need be mapped.
@@ -117,28 +91,11 @@ struct Bodies {
   }
 };
 
-// By face that is computed on, whether it is a patch and of no face of the
-// body; empty where none is.
-std::vector<bool> PatchesOf(const Body& body);
-
 // Takes the rules above to a mesh, and notes in its report what came of them.
 // Deterministic, O(n log^2 n). Neither the result nor what is noted is of use
 // once cancelled. Thread safe.
 Bodies FindBodies(CanonicalMesh& mesh,
                   const CancelToken& cancel = CancelToken());
-
-// Vertices of a body in the whole mesh, ascending: of those that were sewn
-// together one that is a corner of `faces`, faces of the whole mesh, where
-// there is one. `own` ascending.
-std::vector<uint32_t> ToWholeVertices(const Body& body,
-                                      const TriangleMesh& whole,
-                                      std::vector<uint32_t> own,
-                                      const std::vector<uint32_t>& faces);
-
-// How many of the `count` pairs asked for a body has: its share of them, as
-// the shortest wave that they can tell is then the same on all bodies, but
-// enough for a level or two.
-uint32_t PairsOfBody(const Body& body, uint32_t count);
 
 }  // namespace marrow
 

@@ -18,24 +18,35 @@ namespace marrow {
 class NearestFace {
  public:
   // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_left`, by face:
-  // whether it is of none of them.
+  // whether it is of none of them. The mesh must outlive this.
   NearestFace(const TriangleMesh& mesh,
               const std::vector<uint32_t>& face_of_vertex,
               const std::vector<bool>& is_left, double near)
-      : unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
+      : mesh_(mesh),
+        unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
         places_(mesh.positions * unit_),
         cloud_(places_, face_of_vertex),
         tree_(3, Add(mesh, is_left, near)) {}
 
-  // Lowers `best`, a squared distance, and tells the face where it could.
-  void Improve(uint32_t from, double& best, uint32_t& nearest) const {
-    const Eigen::Vector3d place = places_.row(from).transpose();
+  // Places are in units of the largest coordinate.
+  Eigen::RowVector3d PlaceOf(uint32_t vertex) const {
+    return places_.row(vertex);
+  }
+  Eigen::RowVector3d CentreOf(uint32_t face) const {
+    const auto [u, v, w] = mesh_.faces[face];
+    return (places_.row(u) + places_.row(v) + places_.row(w)) / 3;
+  }
+
+  struct Found {
+    double distance_square;
+    Eigen::RowVector3d place;
+    uint32_t face;
+  };
+  Found To(const Eigen::RowVector3d& place) const {
     uint32_t found = 0;
     double distance = std::numeric_limits<double>::infinity();
     tree_.knnSearch(place.data(), 1, &found, &distance);
-    if (!(distance < best)) return;
-    best = distance;
-    nearest = cloud_.faces[found];
+    return {distance, cloud_.places[found], cloud_.faces[found]};
   }
 
  private:
@@ -71,6 +82,7 @@ class NearestFace {
     return cloud_;
   }
 
+  const TriangleMesh& mesh_;
   // Squares of coordinates must neither overflow nor vanish.
   double unit_;
   Positions places_;
