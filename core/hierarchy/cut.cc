@@ -154,7 +154,12 @@ TreeCutter::Base TreeCutter::MakeBase(const CutSpec& spec) const {
     return {GroupsOf(tree_.SegmentsAtLevel(level)), salience, level};
   }
   if (!order_) return {GroupsOf(LargestSplitInto(spec.segments)), 0, 0};
-  if (automatic) return AtSalience(kAutomaticSalience);
+  // The labels of the automatic cut are nodes of the tree, however few levels
+  // of it were asked for.
+  if (automatic)
+    return AtSalience(thresholds_.empty()
+                          ? kAutomaticSalience
+                          : std::max(kAutomaticSalience, thresholds_.back()));
   if (spec.by == CutSpec::By::kSalience) return AtSalience(spec.salience);
   return AtSalience(order_->ThresholdInto(spec.segments));
 }

@@ -18,8 +18,10 @@ namespace marrow {
 // How fine a cut is, and where it has to be finer or coarser than that.
 struct CutSpec {
   enum class By {
-    kAutomatic,  // merged pieces: kAutomaticSalience; the paper: level 2
-    kLevel,      // the segments of `level`; beyond the last, of the last
+    // Merged pieces: kAutomaticSalience, but no finer than the tree's last
+    // level. The paper: level 2, or the last where there are fewer.
+    kAutomatic,
+    kLevel,  // the segments of `level`; beyond the last, of the last
     // At most `segments`, as many as can be. Merges of one salience are made
     // together or not at all, so that limbs that are equal are treated alike.
     // Several bodies do not merge: there are never fewer segments than bodies.

@@ -1,5 +1,7 @@
 #include "core/hierarchy/level_tree.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -58,7 +60,40 @@ std::vector<SegmentNode> PartsOf(const Growth& growth, const SegmentNode& node,
   return parts;
 }
 
+double AreaOf(const std::vector<uint32_t>& faces,
+              const std::vector<double>& face_areas) {
+  double sum = 0;
+  for (uint32_t f : faces) sum += face_areas[f];
+  return sum;
+}
+
+// Of the area of either, how much both have.
+double CommonShare(const SegmentNode& a, const SegmentNode& b,
+                   const std::vector<double>& face_areas) {
+  std::vector<uint32_t> common;
+  std::set_intersection(a.faces.begin(), a.faces.end(), b.faces.begin(),
+                        b.faces.end(), std::back_inserter(common));
+  const double both = AreaOf(common, face_areas);
+  return both /
+         (AreaOf(a.faces, face_areas) + AreaOf(b.faces, face_areas) - both);
+}
+
 }  // namespace
+
+void NoteIterations(const SegmentTree& pieces,
+                    const std::vector<double>& face_areas, SegmentTree& tree) {
+  for (SegmentNode& node : tree.nodes) {
+    if (node.children.size() < 2) continue;
+    double most = 0;
+    for (const SegmentNode& segment : pieces.nodes) {
+      if (segment.children.empty()) continue;
+      const double share = CommonShare(node, segment, face_areas);
+      if (share <= most) continue;
+      most = share;
+      node.iterations = segment.iterations;
+    }
+  }
+}
 
 absl::StatusOr<SegmentTree> BuildLevelTree(
     const SplitContext& context, const SplitOptions& options, double mesh_area,

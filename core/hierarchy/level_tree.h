@@ -25,6 +25,12 @@ absl::StatusOr<SegmentTree> BuildLevelTree(
     const std::vector<uint32_t>& piece_of_face, const MergeOrder& order,
     std::span<const double> thresholds, const CancelToken& cancel);
 
+// Gives every node that is split the iterations of a split of `pieces`, the
+// tree whose leaves were merged: of the segment that has most in common with
+// the node, as a share of the area of both. Both trees have the same faces.
+void NoteIterations(const SegmentTree& pieces,
+                    const std::vector<double>& face_areas, SegmentTree& tree);
+
 }  // namespace marrow
 
 #endif  // MARROW_CORE_HIERARCHY_LEVEL_TREE_H_

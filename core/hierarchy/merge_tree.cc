@@ -35,7 +35,7 @@ constexpr double kPairsShare = 0.5;
 struct Pieces {
   std::vector<uint32_t> of_face;      // numbered from 0
   std::vector<uint32_t> first_split;  // face -> segment of the first level
-  StopReason stop_reason;             // of the whole body
+  SegmentTree tree;
 };
 
 absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
@@ -68,8 +68,8 @@ absl::StatusOr<Pieces> FindPieces(const SplitContext& context,
   for (uint32_t& p : piece)
     p = static_cast<uint32_t>(
         std::lower_bound(leaves.begin(), leaves.end(), p) - leaves.begin());
-  return Pieces{std::move(piece), builder.tree().FaceSegments(1),
-                builder.tree().nodes[0].stop_reason};
+  std::vector<uint32_t> first_split = builder.tree().FaceSegments(1);
+  return Pieces{std::move(piece), std::move(first_split), builder.TakeTree()};
 }
 
 // Fronts cross from shell to shell; where one ends there must be a boundary, or
@@ -175,9 +175,10 @@ absl::StatusOr<MergeTree> BuildMergeTree(
       result.tree,
       BuildLevelTree(context, split, mesh_area, result.piece_of_face,
                      result.order, std::span(kLevelSalience, count), cancel));
-  if (result.tree.nodes[0].children.empty() &&
-      pieces.stop_reason != StopReason::kNone)
-    result.tree.nodes[0].stop_reason = pieces.stop_reason;
+  NoteIterations(pieces.tree, context.face_areas, result.tree);
+  const StopReason whole = pieces.tree.nodes[0].stop_reason;
+  if (result.tree.nodes[0].children.empty() && whole != StopReason::kNone)
+    result.tree.nodes[0].stop_reason = whole;
   progress(1);
   return result;
 }

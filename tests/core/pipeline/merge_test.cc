@@ -100,5 +100,22 @@ TEST(MergeTest, FewerLevelsAreTheFirstOfMore) {
   EXPECT_EQ(one.levels[0].face_labels, all.levels[0].face_labels);
 }
 
+TEST(MergeTest, TheAutomaticCutIsOfTheTreesNodes) {
+  const TriangleMesh cross = LimbCross(3);
+  for (uint32_t levels = 1; levels <= 3; ++levels) {
+    const RecordingSink run = RunOn(cross, Merging(levels));
+    const CutResult cut = run.segmented->Cut(CutSpec(), CancelToken()).value();
+    for (const TreeCut::Segment& segment : cut.segments)
+      EXPECT_LT(segment.id, run.tree.nodes.size());
+  }
+}
+
+TEST(MergeTest, WhatIsSplitTookIterations) {
+  const SegmentTree tree = RunOn(LimbCross(3), Merging()).tree;
+  EXPECT_GT(tree.nodes[0].children.size(), 1u);
+  for (const SegmentNode& node : tree.nodes)
+    EXPECT_EQ(node.iterations > 0, node.children.size() > 1) << node.id;
+}
+
 }  // namespace
 }  // namespace marrow
