@@ -1,4 +1,5 @@
-"""The contract says of every field what it may hold."""
+"""The contract says of every field what it may hold, and of every code that
+there is such a one."""
 
 import re
 import unittest
@@ -10,6 +11,7 @@ NUMBERS = {"double", "float", "fixed32", "int32", "int64", "uint32", "uint64"}
 RANGE = re.compile(r"\b[Rr]ange\b")
 DEFAULT = re.compile(r"\b([Dd]efault|Required|Always|Absent|Empty|Never empty)"
                      r"\b")
+CODE = re.compile(r"\b[A-Z]+_[A-Z_]+\b|\b(?:CRACKS|BOUNDARIES|COARSENED)\b")
 
 
 def contract():
@@ -36,6 +38,27 @@ def fields(text):
         comment = []
 
 
+def comment_of(message, field):
+    """The comment of a field of a message."""
+    for _, text in contract():
+        body = re.search(rf"^message {message} {{\n(.*?)^}}", text,
+                         re.MULTILINE | re.DOTALL)
+        if body:
+            found = fields("message {\n" + body.group(1) + "}")
+            return next(c for _, name, c, _ in found if name == field)
+    raise KeyError(message)
+
+
+def codes():
+    """Code -> whether it is a warning, of all that the server tells."""
+    text = tree.text("server/mesh_warnings.cc")
+    kinds = dict(re.findall(r'^    {"([A-Z_]+)", (true|false),', text,
+                            re.MULTILINE))
+    others = re.findall(r'MakeFinding\(\s*"([A-Z_]+)"', text)
+    return {**{code: kind == "true" for code, kind in kinds.items()},
+            **{code: True for code in others}}
+
+
 class ContractTest(unittest.TestCase):
 
     def test_every_field_says_range_and_default(self):
@@ -52,6 +75,22 @@ class ContractTest(unittest.TestCase):
                     if not in_oneof:
                         self.assertRegex(comment, DEFAULT)
         self.assertGreater(count, 150)
+
+    def test_every_code_is_described(self):
+        known = codes()
+        self.assertGreater(len(known), 15)
+        self.assertTrue(known["FAR_FROM_ORIGIN"])
+        warnings = {code for code, is_warning in known.items() if is_warning}
+        self.assertEqual(
+            set(CODE.findall(comment_of("Warning", "code"))), warnings)
+        self.assertEqual(set(CODE.findall(comment_of("Finding", "code"))),
+                         set(known) - warnings)
+        told = re.search(r"^The codes of warnings are (.*?); of findings "
+                         r"besides,(.*?)\. Others", tree.text("docs/json.md"),
+                         re.MULTILINE | re.DOTALL)
+        self.assertEqual(set(CODE.findall(told.group(1))), warnings)
+        self.assertEqual(set(CODE.findall(told.group(2))),
+                         set(known) - warnings)
 
 
 if __name__ == "__main__":
