@@ -33,8 +33,9 @@ class StreamState final
  public:
   using Reactor = grpc::ServerWriteReactor<Event>;
   using Table = JobTable<Event>;
-  // Makes what a stream that joined another's job reads of an event.
-  using Adapt = void (*)(Event&);
+  using EventPtr = std::shared_ptr<const Event>;
+  // What a stream that joined another's job reads of an event.
+  using Adapt = EventPtr (*)(EventPtr);
 
   StreamState(ServiceContext& context, grpc::CallbackServerContext& call,
               std::string method, Reactor* reactor)
@@ -113,15 +114,9 @@ class StreamState final
     if (next.end.has_value()) FinishLocked(*next.end);
   }
 
-  void WriteLocked(std::shared_ptr<const Event> event)
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
+  void WriteLocked(EventPtr event) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mu_) {
     ++next_sequence_;
-    if (adapt_ != nullptr && event->has_completed()) {
-      auto own = std::make_shared<Event>(*event);
-      adapt_(*own);
-      event = std::move(own);
-    }
-    current_ = std::move(event);
+    current_ = adapt_ == nullptr ? std::move(event) : adapt_(std::move(event));
     writing_ = true;
     write_began_ = Clock::now();
     reactor_->StartWrite(current_.get());
@@ -145,7 +140,7 @@ class StreamState final
   Adapt adapt_ ABSL_GUARDED_BY(mu_) = nullptr;
   bool begun_ ABSL_GUARDED_BY(mu_) = false;
   uint64_t next_sequence_ ABSL_GUARDED_BY(mu_) = 1;
-  std::shared_ptr<const Event> current_ ABSL_GUARDED_BY(mu_);
+  EventPtr current_ ABSL_GUARDED_BY(mu_);
   bool writing_ ABSL_GUARDED_BY(mu_) = false;
   Clock::time_point write_began_ ABSL_GUARDED_BY(mu_);
   std::optional<absl::Status> closing_ ABSL_GUARDED_BY(mu_);

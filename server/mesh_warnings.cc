@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/operators/bodies.h"
 
 namespace marrow {
 namespace {
@@ -100,6 +101,21 @@ v1::Finding MakeFinding(const char* code, uint64_t count,
   return finding;
 }
 
+std::string Describe(const Kind& kind, uint64_t count,
+                     const MeshReport& report) {
+  const bool is_one = count == 1;
+  // Beyond the last body, however large.
+  if (kind.count == &MeshReport::attached_components &&
+      report.bodies >= kMaxBodies) {
+    return absl::StrCat(count, is_one ? " component is" : " components are",
+                        " too small to be segmented, or beyond the ",
+                        kMaxBodies, " largest bodies, and ",
+                        is_one ? "has" : "have",
+                        " the label of the nearest part");
+  }
+  return absl::StrCat(count, " ", is_one ? kind.one : kind.many);
+}
+
 bool IsWarning(const std::string& code) {
   for (const Kind& kind : kKinds)
     if (code == kind.code) return kind.is_warning;
@@ -113,9 +129,8 @@ std::vector<v1::Finding> FindingsAbout(const MeshReport& report) {
   for (const Kind& kind : kKinds) {
     const uint64_t count = report.*kind.count;
     if (count == 0) continue;
-    findings.push_back(MakeFinding(
-        kind.code, count,
-        absl::StrCat(count, " ", count == 1 ? kind.one : kind.many)));
+    findings.push_back(
+        MakeFinding(kind.code, count, Describe(kind, count, report)));
   }
   if (report.bodies > 1) {
     findings.push_back(MakeFinding(
@@ -132,8 +147,9 @@ std::vector<v1::Finding> FindingsAbout(const MeshReport& report) {
         "FAR_FROM_ORIGIN", 1,
         absl::StrCat("the mesh lies ", DistanceInExtents(report),
                      " times its own size away from the origin, where "
-                     "coordinates have few digits left for its shape; move it "
-                     "to the origin where it was made")));
+                     "coordinates of single precision have few digits left "
+                     "for its shape; if it was made with those, move it to the "
+                     "origin there")));
   }
   return findings;
 }

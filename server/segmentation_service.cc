@@ -18,10 +18,13 @@ namespace {
 
 using Plan = JobPlan<v1::SegmentEvent>;
 
-void Accept(const MeshDigest& digest, SegmentJob& job) {
+void Accept(const MeshDigest& digest, bool is_kept, SegmentJob& job) {
   v1::SegmentEvent event;
-  event.mutable_accepted()->set_job_id(job.id());
-  SetMeshDigest(digest, event.mutable_accepted()->mutable_mesh_digest());
+  v1::Accepted* accepted = event.mutable_accepted();
+  accepted->set_job_id(job.id());
+  SetMeshDigest(digest, accepted->mutable_mesh_digest());
+  accepted->set_result(is_kept ? v1::CACHE_OUTCOME_HIT
+                               : v1::CACHE_OUTCOME_MISS);
   job.Append(std::move(event));
 }
 
@@ -37,11 +40,10 @@ absl::StatusOr<Plan> MakePlan(ServiceContext& context,
   stream.Describe("mesh", payload.digest.sha256.Hex().substr(0, 12));
   Plan plan;
   plan.key = SegmentJobKey(payload.digest, parameters);
-  plan.open = [digest = payload.digest](SegmentJob& job) {
-    Accept(digest, job);
-  };
   const auto kept = context.results.Find(
       ResultCache::KeyOf(payload.digest, parameters.options));
+  plan.open = [digest = payload.digest, is_kept = kept != nullptr](
+                  SegmentJob& job) { Accept(digest, is_kept, job); };
   plan.run = [&context, payload, parameters, kept](SegmentJob& job) {
     RunSegmentJob(context, payload, parameters, kept, job);
   };
@@ -69,7 +71,7 @@ absl::StatusOr<Plan> MakeCutPlan(ServiceContext& context,
   if (kept == nullptr) return NotCached(digest.sha256);
   Plan plan;
   plan.key = CutJobKey(digest, parameters);
-  plan.open = [digest](SegmentJob& job) { Accept(digest, job); };
+  plan.open = [digest](SegmentJob& job) { Accept(digest, true, job); };
   plan.run = [digest, parameters, kept](SegmentJob& job) {
     RunCutJob(digest, parameters, kept, job);
   };

@@ -26,19 +26,34 @@ struct JobPlan {
   bool quick = false;  // solves nothing: runs beside those that do
 };
 
+// Of a message that tells where the result came from.
+template <typename Message>
+void JoinResult(Message& message) {
+  if (message.result() == v1::CACHE_OUTCOME_MISS)
+    message.set_result(v1::CACHE_OUTCOME_JOINED);
+}
+
 // A call that joined another's job ran no solver itself and says so.
 template <typename Event>
-void AdaptForJoiner(Event& event) {
-  auto* completed = event.mutable_completed();
-  if constexpr (requires { completed->result(); }) {
-    if (completed->result() == v1::CACHE_OUTCOME_MISS) {
-      completed->set_result(v1::CACHE_OUTCOME_JOINED);
+std::shared_ptr<const Event> AdaptForJoiner(
+    std::shared_ptr<const Event> event) {
+  constexpr bool kHasResult = requires { event->completed().result(); };
+  if constexpr (kHasResult) {
+    if (event->has_accepted()) {
+      auto own = std::make_shared<Event>(*event);
+      JoinResult(*own->mutable_accepted());
+      return own;
     }
   }
-  v1::SpectrumUse* use = completed->mutable_spectrum();
-  if (use->outcome() != v1::CACHE_OUTCOME_MISS) return;
-  use->set_outcome(v1::CACHE_OUTCOME_JOINED);
-  use->set_solver_runs(0);
+  if (!event->has_completed()) return event;
+  auto own = std::make_shared<Event>(*event);
+  if constexpr (kHasResult) JoinResult(*own->mutable_completed());
+  v1::SpectrumUse* use = own->mutable_completed()->mutable_spectrum();
+  if (use->outcome() == v1::CACHE_OUTCOME_MISS) {
+    use->set_outcome(v1::CACHE_OUTCOME_JOINED);
+    use->set_solver_runs(0);
+  }
+  return own;
 }
 
 template <typename Event>

@@ -101,6 +101,7 @@ TEST_F(CutTest, TellsWhatSegmentWithThatCutTellsAndSolvesNothing) {
     ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
     EXPECT_TRUE(CutEventsOf(answer) == CutEventsOf(expected[i])) << i;
     EXPECT_TRUE(answer.events.front().has_accepted());
+    EXPECT_EQ(answer.accepted().result(), v1::CACHE_OUTCOME_HIT);
     for (size_t e = 0; e < answer.events.size(); ++e) {
       EXPECT_EQ(answer.events[e].sequence(), e + 1);
     }

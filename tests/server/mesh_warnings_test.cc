@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/operators/bodies.h"
+
 namespace marrow {
 namespace {
 
@@ -77,6 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
                            [](MeshReport& r) { r.bridged_components = 12; }},
                       Flaw{"COMPONENTS_ATTACHED", "1 component is too small",
                            [](MeshReport& r) { r.attached_components = 1; }},
+                      Flaw{"INNER_WALL_FACES", "2 faces are inside",
+                           [](MeshReport& r) { r.inner_wall_faces = 2; }},
                       Flaw{"SEVERAL_BODIES",
                            "the mesh is 3 bodies, apart from each other or one "
                            "the surroundings of others; each is segmented on "
@@ -91,12 +95,36 @@ INSTANTIATE_TEST_SUITE_P(
                            [](MeshReport& r) { r.nonmanifold_edges = 2; }},
                       Flaw{"UNUSED_POINTS", "1 point is in no face",
                            [](MeshReport& r) { r.unused_points = 1; }},
-                      Flaw{"FAR_FROM_ORIGIN", "times its own size",
+                      Flaw{"FAR_FROM_ORIGIN",
+                           "times its own size away from the origin, where "
+                           "coordinates of single precision have few digits",
                            [](MeshReport& r) {
                              r.box_min.x() += 1e6;
                              r.box_max.x() += 1e6;
                            }}),
     [](const auto& info) { return std::string(info.param.code); });
+
+// The message of COMPONENTS_ATTACHED.
+std::string AttachedMessage(uint64_t bodies, uint64_t attached) {
+  MeshReport report = CleanReport();
+  report.bodies = bodies;
+  report.attached_components = attached;
+  for (const v1::Warning& warning : WarningsAbout(report))
+    if (warning.code() == "COMPONENTS_ATTACHED") return warning.message();
+  return "";
+}
+
+TEST(MeshWarningsTest, WhatIsBeyondTheLastBodyIsNotCalledTooSmall) {
+  EXPECT_EQ(AttachedMessage(kMaxBodies - 1, 2),
+            "2 components are too small to be segmented, and have the label of "
+            "the nearest part");
+  EXPECT_EQ(AttachedMessage(kMaxBodies, 2),
+            "2 components are too small to be segmented, or beyond the 128 "
+            "largest bodies, and have the label of the nearest part");
+  EXPECT_EQ(AttachedMessage(kMaxBodies, 1),
+            "1 component is too small to be segmented, or beyond the 128 "
+            "largest bodies, and has the label of the nearest part");
+}
 
 TEST(MeshWarningsTest, EachFlawIsToldOnItsOwn) {
   MeshReport report = CleanReport();

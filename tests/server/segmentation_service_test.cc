@@ -136,6 +136,19 @@ TEST_F(SegmentTest, ASecondCallDoesNotTouchTheSolver) {
   EXPECT_EQ(cold.Essence(), warm.Essence());
 }
 
+TEST_F(SegmentTest, WhetherTheResultIsKeptIsToldFirst) {
+  Start();
+  v1::SegmentRequest request = Request(StarPayload(3));
+  EXPECT_EQ(Segment(request).accepted().result(), v1::CACHE_OUTCOME_MISS);
+  EXPECT_EQ(Segment(request).accepted().result(), v1::CACHE_OUTCOME_HIT);
+  EXPECT_EQ(runs_, 1);
+  request.mutable_options()->set_levels(1);
+  const Answer other = Segment(request);
+  EXPECT_EQ(other.accepted().result(), v1::CACHE_OUTCOME_MISS);
+  EXPECT_EQ(other.completed().spectrum().outcome(), v1::CACHE_OUTCOME_HIT);
+  EXPECT_EQ(solver_->calls, 1);
+}
+
 TEST_F(SegmentTest, AnotherKappaHitsTheSameSpectrum) {
   Start();
   v1::SegmentRequest request = Request(StarPayload(3));
@@ -235,6 +248,7 @@ TEST_F(SegmentTest, ConcurrentEqualRequestsAreComputedOnce) {
     const v1::SpectrumUse& use = answer.completed().spectrum();
     misses += use.outcome() == v1::CACHE_OUTCOME_MISS && use.solver_runs() == 1;
     EXPECT_NE(use.outcome(), v1::CACHE_OUTCOME_HIT);
+    EXPECT_EQ(answer.accepted().result(), answer.completed().result());
   }
   EXPECT_EQ(misses, 1);
 }

@@ -60,6 +60,7 @@ struct Answer {
   grpc::Status status;
   std::vector<v1::SegmentEvent> events;
 
+  const v1::Accepted& accepted() const { return events.front().accepted(); }
   const v1::Completed& completed() const { return events.back().completed(); }
   // Without what may differ between equal requests.
   std::vector<std::string> Essence() const {
@@ -67,7 +68,10 @@ struct Answer {
     for (v1::SegmentEvent event : events) {
       if (event.has_progress()) continue;
       event.clear_sequence();
-      if (event.has_accepted()) event.mutable_accepted()->clear_job_id();
+      if (event.has_accepted()) {
+        event.mutable_accepted()->clear_job_id();
+        event.mutable_accepted()->clear_result();
+      }
       if (event.has_completed()) {
         event.mutable_completed()->clear_timings();
         event.mutable_completed()->clear_result();
