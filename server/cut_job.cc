@@ -51,7 +51,7 @@ absl::Status AppendCut(const SegmentedMesh& mesh, const CutSpec& spec,
 }
 
 SpectrumUse SpectrumUseOf(const SegmentedMesh& kept) {
-  return {CacheOutcome::kHit, 0, kept.EigenPairCount()};
+  return {CacheOutcome::kHit, 0, kept.EigenPairCount(), kept.OperatorReport()};
 }
 
 std::string CutJobKey(const MeshDigest& mesh,

@@ -192,6 +192,7 @@ void SetMeshReport(const MeshReport& report, v1::MeshReport* message) {
   message->set_bridging_distance(report.bridging_distance);
   message->set_attached_components(report.attached_components);
   message->set_attached_faces(report.attached_faces);
+  message->set_worn_components(report.worn_components);
   message->set_coarse_vertices(report.coarse_vertices);
   for (v1::Finding& finding : FindingsAbout(report)) {
     *message->add_findings() = std::move(finding);
@@ -209,6 +210,8 @@ void SetSpectrumUse(const SpectrumUse& use, v1::SpectrumUse* message) {
   message->set_outcome(ToOutcome(use.outcome));
   message->set_solver_runs(use.solver_runs);
   message->set_eigen_pairs(use.eigen_pairs);
+  message->set_edge_flips(static_cast<uint32_t>(use.laplacian.flips));
+  message->set_mollification(use.laplacian.mollification);
 }
 
 v1::Stage ToStage(Stage stage) {

@@ -9,6 +9,7 @@
 #include "core/base/error_reason.h"
 #include "core/base/status_macros.h"
 #include "core/operators/bodies.h"
+#include "core/operators/laplacian.h"
 #include "server/compute_pool.h"
 #include "server/event_builder.h"
 #include "server/request_parser.h"
@@ -64,20 +65,32 @@ absl::StatusOr<Inspection> ParseInspection(
 
 // Whether a Segment call with so many pairs would need no solver. Which of them
 // it takes is known once it has run: then by its result, else where all are
-// there. Of no use once cancelled.
+// there.
 bool IsCached(ServiceContext& context, const MeshDigest& digest,
-              CanonicalMesh& mesh, uint32_t count, const CancelToken& cancel) {
+              const Bodies& bodies, uint32_t count) {
   SegmentationOptions options;
   options.eigen_pairs = count;
   if (context.results.Find(ResultCache::KeyOf(digest, options)) != nullptr) {
     return true;
   }
-  const Bodies bodies = FindBodies(mesh, cancel);
   return std::all_of(bodies.bodies.begin(), bodies.bodies.end(),
                      [&](const Body& body) {
                        return context.spectra.Contains(
                            body.Computed(), PairsOfBody(body, count));
                      });
+}
+
+// What it takes to make operators of the bodies' triangles. Those that cannot
+// be one are left out: Segment says why.
+LaplacianReport OperatorReportOn(const Bodies& bodies,
+                                 const CancelToken& cancel) {
+  LaplacianReport sum;
+  for (const Body& body : bodies.bodies) {
+    const absl::StatusOr<Laplacian> laplacian =
+        BuildLaplacian(body.Computed().mesh, cancel);
+    if (laplacian.ok()) sum.Add(laplacian->report);
+  }
+  return sum;
 }
 
 absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
@@ -89,9 +102,14 @@ absl::StatusOr<v1::InspectMeshResponse> Inspect(ServiceContext& context,
                                context.options.mesh_limits, cancel));
   const uint32_t count = inspection.eigen_pairs;
   v1::InspectMeshResponse response;
-  response.set_spectrum_cached(
-      IsCached(context, inspection.payload.digest, mesh, count, cancel));
+  const Bodies bodies = FindBodies(mesh, cancel);
   MARROW_RETURN_IF_ERROR(cancel.Check());
+  response.set_spectrum_cached(
+      IsCached(context, inspection.payload.digest, bodies, count));
+  const LaplacianReport repairs = OperatorReportOn(bodies, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  response.set_edge_flips(static_cast<uint32_t>(repairs.flips));
+  response.set_mollification(repairs.mollification);
   SetMeshReport(mesh.report, response.mutable_report());
   SetPrediction(mesh.report, count, response.mutable_report());
   SetMeshDigest(inspection.payload.digest, response.mutable_mesh_digest());

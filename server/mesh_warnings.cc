@@ -83,6 +83,12 @@ constexpr Kind kKinds[] = {
      "part",
      "components are too small to be segmented, and have the label of the "
      "nearest part"},
+    {"COMPONENTS_WORN", false, &MeshReport::worn_components,
+     "component lies all over on larger ones, as clothes do, and has the "
+     "labels "
+     "beneath it",
+     "components lie all over on larger ones, as clothes do, and have the "
+     "labels beneath them"},
     {"COARSENED", false, &MeshReport::coarse_vertices,
      "vertex is left of a mesh so large; its parts are found on that",
      "vertices are left of a mesh so large for its parts to be found on; its "

@@ -41,15 +41,7 @@ class JobEigenPairs : public EigenPairSource {
 
   SpectrumUse use() const {
     SpectrumUse sum;
-    for (const SpectrumUse& use : uses_) {
-      sum.eigen_pairs = std::max(sum.eigen_pairs, use.eigen_pairs);
-      sum.solver_runs += use.solver_runs;
-      // One miss among several makes the whole a miss.
-      if (sum.outcome != CacheOutcome::kMiss &&
-          use.outcome != CacheOutcome::kHit) {
-        sum.outcome = use.outcome;
-      }
-    }
+    for (const SpectrumUse& use : uses_) sum.Add(use);
     return sum;
   }
   double seconds() const { return seconds_; }

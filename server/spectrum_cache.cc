@@ -71,6 +71,7 @@ class SpectrumCache::Stream : public EigenPairStream {
   Result UpTo(double bound, const CancelToken& cancel,
               const ProgressCallback& progress) override {
     MARROW_ASSIGN_OR_RETURN(const auto pairs, Obtain(bound, cancel, progress));
+    use_.laplacian = pairs->laplacian;
     return Shortened(pairs);
   }
 
@@ -163,6 +164,14 @@ class SpectrumCache::Stream : public EigenPairStream {
   // An entry with more pairs than may be given, and those that may.
   std::shared_ptr<const EigenPairs> longer_, shortened_;
 };
+
+void SpectrumUse::Add(const SpectrumUse& other) {
+  if (outcome != CacheOutcome::kMiss && other.outcome != CacheOutcome::kHit)
+    outcome = other.outcome;
+  solver_runs += other.solver_runs;
+  eigen_pairs = std::max(eigen_pairs, other.eigen_pairs);
+  laplacian.Add(other.laplacian);
+}
 
 SpectrumCache::SpectrumCache(std::shared_ptr<EigenPairSource> solver,
                              uint64_t budget_bytes)

@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "absl/synchronization/mutex.h"
 #include "core/base/digest.h"
+#include "core/operators/laplacian.h"
 #include "core/spectrum/eigen_pairs.h"
 #include "server/lru_cache.h"
 
@@ -25,6 +26,10 @@ struct SpectrumUse {
   CacheOutcome outcome = CacheOutcome::kHit;
   uint32_t solver_runs = 0;  // by this caller
   uint32_t eigen_pairs = 0;  // without the constant one
+  LaplacianReport laplacian;
+
+  // That of several spectra: a miss where one is, else joined where one is.
+  void Add(const SpectrumUse& other);
 };
 
 // An entry holds the first pairs of a geometry, as many as anyone needed so

@@ -72,12 +72,6 @@ absl::StatusOr<CertifiedSpectrum> SolveStrict(
   return spectrum;
 }
 
-// How the pairs of several meshes were had, together.
-void Add(const SpectrumUse& more, SpectrumUse& use) {
-  if (more.outcome != CacheOutcome::kHit) use.outcome = more.outcome;
-  use.solver_runs += more.solver_runs;
-}
-
 // In double. Where windows of the usual pairs part a cluster, all is solved
 // anew strictly.
 absl::StatusOr<CertifiedSpectrum> SolveUsual(
@@ -94,14 +88,14 @@ absl::StatusOr<CertifiedSpectrum> SolveUsual(
         context.spectra.Get(
             component, count, cancel,
             [&](double x) { progress(kSolverShare * x); }, own));
-    Add(own, use);
+    use.Add(own);
     auto spectrum = CertifySpectrum(
         component, *pairs, count, kUsualResidual, cancel,
         [&](double x) { progress(kSolverShare + (1 - kSolverShare) * x); });
     if (spectrum.ok() ||
         ReasonOf(spectrum.status()) != kReasonSolverNotConverged)
       return spectrum;
-    Add({.outcome = CacheOutcome::kMiss, .solver_runs = 1}, use);
+    use.Add({.outcome = CacheOutcome::kMiss, .solver_runs = 1});
     return context.engine.solve_strictly(component, count, cancel, nullptr);
   };
   return SolveByComponents(mesh, work.eigen_pairs, solve, cancel,

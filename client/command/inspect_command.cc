@@ -50,6 +50,9 @@ void PrintForPerson(const std::string& file,
   PrintCount("sliver faces", report.sliver_faces());
   PrintCount("flipped faces", report.flipped_faces());
   PrintCount("unused points", report.unused_points());
+  PrintCount("edges to flip", response.edge_flips());
+  absl::PrintF("  %-24s %g of a mean edge\n", "edges lengthened by",
+               response.mollification());
   absl::PrintF("  %-24s %d\n", "Euler characteristic",
                report.euler_characteristic());
   if (report.has_genus()) {
@@ -79,7 +82,9 @@ nlohmann::json ToJson(const std::string& file,
           {"geometry_digest", HexOf(response.geometry_digest().sha256())},
           {"spectrum_cached", response.spectrum_cached()},
           {"predicted_seconds", response.predicted_seconds()},
-          {"predicted_bytes", response.predicted_bytes()}};
+          {"predicted_bytes", response.predicted_bytes()},
+          {"edge_flips", response.edge_flips()},
+          {"mollification", response.mollification()}};
 }
 
 absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {

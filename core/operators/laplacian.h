@@ -34,6 +34,14 @@ struct LaplacianReport {
   double mollification = 0;
   uint64_t flips = 0;  // at most MaxFlips() of the edges that could be flipped
   uint64_t nonmanifold_edges = 0;  // of three faces or more
+
+  // That of several meshes: sums, and the most of what is no count.
+  void Add(const LaplacianReport& other) {
+    path = std::max(path, other.path);
+    mollification = std::max(mollification, other.mollification);
+    flips += other.flips;
+    nonmanifold_edges += other.nonmanifold_edges;
+  }
 };
 
 // L: n x n, symmetric to the last bit, off-diagonal entries at most 0 and rows

@@ -145,6 +145,13 @@ uint32_t SegmentedMesh::EigenPairCount() const {
   return most;
 }
 
+LaplacianReport SegmentedMesh::OperatorReport() const {
+  LaplacianReport sum;
+  for (const auto& body : workspace_->prepared_bodies)
+    sum.Add(body->context().pulled.pairs->laplacian);
+  return sum;
+}
+
 uint64_t SegmentedMesh::Bytes() const {
   // The canonical mesh, its maps, its adjacency; the bodies have them again
   // where they are not the mesh itself.

@@ -13,6 +13,7 @@
 #include "core/hierarchy/merged_pieces.h"
 #include "core/hierarchy/segment_tree.h"
 #include "core/mesh/canonical_mesh.h"
+#include "core/operators/laplacian.h"
 #include "core/pieces/split_region.h"
 #include "core/skeleton/skeleton.h"
 
@@ -66,6 +67,8 @@ class SegmentedMesh {
   // what was asked for, or all that there are. Fewer were computed where fewer
   // were needed.
   uint32_t EigenPairCount() const;
+  // What it took to make operators of its bodies' triangles.
+  LaplacianReport OperatorReport() const;
   // Memory it holds, the eigen-pairs among it; good to a fifth.
   uint64_t Bytes() const;
 

@@ -34,6 +34,7 @@ EigenPairs FirstPairs(const EigenPairs& pairs, uint32_t count) {
   return {.eigenvalues = pairs.eigenvalues.head(count),
           .eigenvectors = pairs.eigenvectors.leftCols(count),
           .area = pairs.area,
+          .laplacian = pairs.laplacian,
           .complete = false,
           .for_any_count = pairs.for_any_count};
 }

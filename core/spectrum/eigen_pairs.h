@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
+#include "core/operators/laplacian.h"
 
 namespace marrow {
 
@@ -30,6 +31,8 @@ struct EigenPairs {
   // Area of the canonical mesh in the payload's units: an eigenvalue in those
   // units is lambda / area, an eigenvector phi / sqrt(area).
   double area = 0;
+  // What it took to make an operator of the triangles.
+  LaplacianReport laplacian;
   // Whether these are all the pairs of the mesh, so that no truncation of a
   // diffusion map can want more.
   bool complete = false;

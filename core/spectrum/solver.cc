@@ -33,6 +33,7 @@ constexpr double kAnalysisShare = 0.1;
 struct SymmetricProblem {
   Eigen::SparseMatrix<double> A;
   Eigen::VectorXd inverse_sqrt_mass;
+  LaplacianReport laplacian;
 };
 
 absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
@@ -41,6 +42,7 @@ absl::StatusOr<SymmetricProblem> MakeProblem(const TriangleMesh& mesh,
                           BuildLaplacian(mesh, cancel));
   MARROW_RETURN_IF_ERROR(cancel.Check());
   SymmetricProblem problem;
+  problem.laplacian = laplacian.report;
   problem.inverse_sqrt_mass = laplacian.M.cwiseSqrt().cwiseInverse();
   problem.A = problem.inverse_sqrt_mass.asDiagonal() * laplacian.L *
               problem.inverse_sqrt_mass.asDiagonal();
@@ -171,6 +173,7 @@ class SolverStream : public EigenPairStream {
                       const ProgressCallback& progress) {
     auto pairs = std::make_shared<EigenPairs>();
     pairs->area = mesh_.report.area;
+    pairs->laplacian = problem_.laplacian;
     if (pairs_ != nullptr) *pairs = *pairs_;
     const Eigen::Index before = pairs->eigenvalues.size();
     if (slicer_ == nullptr) {
