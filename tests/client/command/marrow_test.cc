@@ -351,6 +351,16 @@ TEST(MarrowTest, AnEndlessFileIsRefused) {
   EXPECT_THAT(run.err, HasSubstr("/dev/zero: is larger than 1 GiB"));
 }
 
+TEST(MarrowTest, AClosedInputIsEmpty) {
+  for (const char* command : {"inspect", "spectrum", "segment -q"}) {
+    const Finished run = RunProgram(
+        {"/bin/sh", "-c",
+         "timeout 20 " + ProgramPath("marrow") + " " + command + " - <&-"});
+    EXPECT_EQ(run.code, 1) << command;
+    EXPECT_THAT(run.err, HasSubstr("marrow: -: is empty")) << command;
+  }
+}
+
 TEST(MarrowTest, AFullDiskIsNoSuccess) {
   const Finished run = RunProgram(
       {"/bin/sh", "-c", ProgramPath("marrow") + " sample --list >/dev/full"});
