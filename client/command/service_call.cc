@@ -56,7 +56,8 @@ absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize,
   input.order = std::move(loaded.encoded.order);
   input.payload = {.draco = std::move(loaded.encoded.bytes),
                    .num_faces = input.order.NumDecodedFaces(),
-                   .num_points = input.order.NumDecodedPoints()};
+                   .num_points = input.order.NumDecodedPoints(),
+                   .num_unused_vertices = input.order.NumUnusedVertices()};
   return input;
 }
 

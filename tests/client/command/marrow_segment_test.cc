@@ -420,6 +420,7 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
             "5 5 5\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 5 6\n");
   const Finished run = Segment({folder_ / "two.off"});
   EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("two.off: warning: 1 vertex is in no face"));
   EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is 2 bodies"));
   const json result = json::parse(ReadFile(Out("two.json")));
   std::vector<std::string> codes;
@@ -428,6 +429,7 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
     EXPECT_FALSE(warning["message"].get<std::string>().empty());
   }
   EXPECT_THAT(codes, ElementsAre("UNUSED_POINTS", "SEVERAL_BODIES"));
+  EXPECT_EQ(result["report"]["unused_points"], 1);
 
   const Finished events = Segment({folder_ / "two.off", "--json", "--quiet"});
   EXPECT_THAT(events.out, HasSubstr("\"event\":\"warning\""));

@@ -170,8 +170,31 @@ TEST(MarrowTest, InspectTellsWhatWillBeDone) {
       Marrow({"inspect", folder / "t.off", "--json"}).out)["report"];
   EXPECT_EQ(report["flipped_faces"], 1);
   EXPECT_TRUE(report["genus"].is_null());
-  EXPECT_EQ(report["findings"][0]["code"], "FLIPPED_FACES");
-  EXPECT_EQ(report["findings"][1]["code"], "BOUNDARIES");
+  std::vector<std::string> codes;
+  for (const json& finding : report["findings"])
+    codes.push_back(finding["code"]);
+  EXPECT_THAT(codes, ::testing::ElementsAre("WELDED_POINTS", "FLIPPED_FACES",
+                                            "BOUNDARIES", "UNUSED_POINTS"));
+}
+
+// So many of them that no payload could hold them, and some nowhere.
+TEST(MarrowTest, CountsVerticesOfNoFaceHoweverMany) {
+  const TemporaryFolder folder;
+  std::string text = "OFF\n100004 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  for (int i = 0; i < 50'000; ++i) text += "1e30 nan inf\n7 7 7\n";
+  WriteFile(folder / "t.off", text + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  for (const char* command : {"inspect", "spectrum"}) {
+    const Finished run =
+        Marrow({command, folder / "t.off", "--json", "--quantize", "12"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    const json report = json::parse(run.out)["report"];
+    EXPECT_EQ(report["unused_points"], 100'000) << command;
+    ASSERT_EQ(report["findings"].size(), 1u) << command;
+    EXPECT_EQ(report["findings"][0]["code"], "UNUSED_POINTS");
+    EXPECT_EQ(report["findings"][0]["count"], 100'000);
+  }
+  EXPECT_THAT(Marrow({"inspect", folder / "t.off"}).out,
+              HasSubstr("100000 vertices are in no face"));
 }
 
 TEST(MarrowTest, InspectTellsWhatIsWrong) {
