@@ -53,6 +53,14 @@ TEST(MarrowTest, TellsItsVersion) {
   const Finished run = Marrow({"--version"});
   EXPECT_EQ(run.code, 0);
   EXPECT_THAT(run.out, ::testing::MatchesRegex("marrow [0-9.]+\n"));
+  for (const char* command :
+       {"segment", "cut", "inspect", "spectrum", "sample", "health"}) {
+    const Finished alone = Marrow({command, "--version"});
+    EXPECT_EQ(alone.code, 0) << command << alone.err;
+    EXPECT_EQ(alone.out, run.out) << command;
+    EXPECT_THAT(Marrow({command, "--help"}).out, HasSubstr("--version"));
+  }
+  EXPECT_EQ(Marrow({"segment", "none.off", "--version"}).out, run.out);
 }
 
 TEST(MarrowTest, ACommandLineThatMakesNoSenseIsAUsageError) {
