@@ -348,6 +348,9 @@ TEST(MarrowTest, ImpossibleSamplesAreUsageErrors) {
     EXPECT_EQ(Marrow(arguments).code, 2) << arguments[1];
   }
   EXPECT_THAT(ListFolder(folder.path()), IsEmpty());
+  EXPECT_THAT(Marrow({"sample", "hand", "-o", folder / "x.xyz"}).err,
+              HasSubstr("x.xyz: cannot write this format; use .off, .obj, "
+                        ".ply, .stl or .drc"));
 }
 
 TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
