@@ -406,6 +406,18 @@ TEST_F(MarrowSegmentTest, QuietTellsNothing) {
   EXPECT_THAT(run.err, IsEmpty());
 }
 
+TEST_F(MarrowSegmentTest, AnOptionOfTheOtherMethodIsWarnedOf) {
+  const std::string mesh = folder_ / "one.off";
+  WriteFile(mesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string warning =
+      "marrow: warning: --kappa has no effect with --method merge\n";
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--method", "merge"}).err, warning);
+  EXPECT_EQ(Segment({mesh, "--kappa", "2"}).err, warning);
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--quiet"}).err, "");
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--method", "paper"}).err, "");
+  EXPECT_EQ(Segment({mesh, "--delta", "0.2", "--epsilon", "0.02"}).err, "");
+}
+
 TEST_F(MarrowSegmentTest, ASingleTriangleIsOneSegment) {
   WriteFile(folder_ / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   const Finished run = Segment({folder_ / "one.off"});

@@ -353,6 +353,24 @@ TEST(MarrowTest, ImpossibleSamplesAreUsageErrors) {
                         ".ply, .stl or .drc"));
 }
 
+TEST(MarrowTest, QuantizingWhatIsSentAsItIsIsWarnedOf) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "hand.drc";
+  ASSERT_EQ(Marrow({"sample", "hand", "--faces", "5000", "-o", path}).code, 0);
+  const std::string warning = "marrow: " + path +
+                              ": warning: --quantize has no effect on a Draco "
+                              "file, which is sent as it is\n";
+  EXPECT_EQ(Marrow({"inspect", path, "--quantize", "9"}).err, warning);
+  EXPECT_EQ(Marrow({"spectrum", path, "-k", "2", "--quantize", "9"}).err,
+            warning);
+  EXPECT_EQ(Marrow({"segment", path, "--levels", "1", "--quantize", "9", "-o",
+                    folder / "out"})
+                .err,
+            warning);
+  EXPECT_EQ(Marrow({"inspect", path, "--quantize", "9", "-q"}).err, "");
+  EXPECT_EQ(Marrow({"inspect", path}).err, "");
+}
+
 TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
   const TemporaryFolder folder;
   WriteFile(folder / "t.off", kTetrahedron);
