@@ -41,16 +41,19 @@ absl::Status AnswerBuilder::Add(const v1::SegmentEvent& event) {
     case v1::SegmentEvent::kCut:
       return cut_.AddSegments(event.cut());
     case v1::SegmentEvent::kWarning:
-      if (warnings_.size() < size_.num_faces) {
-        warnings_.push_back({{"code", event.warning().code()},
-                             {"message", event.warning().message()}});
-      }
+      AddWarning(event.warning());
       return absl::OkStatus();
     case v1::SegmentEvent::kCompleted:
       return AddCompleted(event.completed());
     default:  // accepted, progress, and what later servers may add
       return absl::OkStatus();
   }
+}
+
+void AnswerBuilder::AddWarning(const v1::Warning& warning) {
+  if (warnings_.size() >= size_.num_faces) return;
+  warnings_.push_back(
+      {{"code", warning.code()}, {"message", warning.message()}});
 }
 
 absl::Status AnswerBuilder::AddLevel(const v1::Level& level) {

@@ -28,6 +28,8 @@ class AnswerBuilder {
 
   // Takes the next event of the stream.
   absl::Status Add(const v1::SegmentEvent& event);
+  // One more, that no event told.
+  void AddWarning(const v1::Warning& warning);
 
   // Call once, after the stream ended well. Faces and vertices are those of
   // the payload as it decodes.

@@ -6,6 +6,7 @@
 #include "client/answer_builder.h"
 #include "client/rpc_status.h"
 #include "client/spectrum_builder.h"
+#include "client/unused_vertices.h"
 #include "core/base/crc32c.h"
 #include "core/base/digest.h"
 #include "core/base/error_reason.h"
@@ -63,6 +64,24 @@ absl::Status ReadAll(CallGroup::Context& context,
   return FromRpcStatus(reader.Finish());
 }
 
+// Completes a report on the mesh, and warns as the server would have.
+absl::Status TakeSegmentEvent(const Payload& payload,
+                              const SegmentObserver& observer,
+                              v1::SegmentEvent& event, AnswerBuilder& builder) {
+  const bool was_short = event.has_mesh_report() &&
+                         CountUnusedVertices(payload.num_unused_vertices,
+                                             *event.mutable_mesh_report());
+  MARROW_RETURN_IF_ERROR(builder.Add(event));
+  observer(event);
+  if (!was_short) return absl::OkStatus();
+  v1::SegmentEvent warned;
+  *warned.mutable_warning() =
+      UnusedVerticesWarning(payload.num_unused_vertices);
+  builder.AddWarning(warned.warning());
+  observer(warned);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Client>> Client::Connect(
@@ -100,10 +119,8 @@ absl::StatusOr<Segmentation> Client::Segment(
         std::make_unique<AnswerBuilder>(payload.num_faces, payload.num_points);
     CallGroup::Context context(calls_, deadline);
     auto reader = segmentation_->Segment(context.get(), request);
-    return ReadAll(context, *reader, [&](const v1::SegmentEvent& event) {
-      MARROW_RETURN_IF_ERROR(builder->Add(event));
-      observer(event);
-      return absl::OkStatus();
+    return ReadAll(context, *reader, [&](v1::SegmentEvent& event) {
+      return TakeSegmentEvent(payload, observer, event, *builder);
     });
   };
   MARROW_RETURN_IF_ERROR(WithMesh(payload, absl::Now() + timeout, attempt));
@@ -141,6 +158,7 @@ absl::StatusOr<v1::InspectMeshResponse> Client::Inspect(
         store_->InspectMesh(context.get(), request, &response));
   };
   MARROW_RETURN_IF_ERROR(WithMesh(payload, absl::Now() + timeout, attempt));
+  CountUnusedVertices(payload.num_unused_vertices, *response.mutable_report());
   return response;
 }
 
@@ -156,8 +174,12 @@ absl::StatusOr<Spectrum> Client::ComputeSpectrum(
     builder = std::make_unique<SpectrumBuilder>(payload.num_points, parameters);
     CallGroup::Context context(calls_, deadline);
     auto reader = spectrum_->ComputeSpectrum(context.get(), request);
-    return ReadAll(context, *reader, [&](const v1::SpectrumEvent& event) {
+    return ReadAll(context, *reader, [&](v1::SpectrumEvent& event) {
       if (event.has_progress()) observer(event.progress());
+      if (event.has_header()) {
+        CountUnusedVertices(payload.num_unused_vertices,
+                            *event.mutable_header()->mutable_report());
+      }
       return builder->Add(event);
     });
   };

@@ -64,7 +64,8 @@ class Client {
   explicit Client(std::shared_ptr<grpc::Channel> channel);
 
   // `timeout` bounds each function as a whole, uploads included.
-  // Labels are those of the payload's faces and points as it decodes. Of
+  // Labels are those of the payload's faces and points as it decodes. Reports
+  // and warnings tell of unused vertices that were not sent, too. Of
   // `parameters`, options and cut are heeded; mesh and outputs are set by the
   // call.
   absl::StatusOr<Segmentation> Segment(const Payload& payload,

@@ -1,4 +1,5 @@
-// Bytes to send, and how many faces and points they decode to.
+// Bytes to send, how many faces and points they decode to, and what of the file
+// they lack.
 #ifndef MARROW_CLIENT_PAYLOAD_H_
 #define MARROW_CLIENT_PAYLOAD_H_
 
@@ -13,6 +14,9 @@ struct Payload {
   std::string draco;
   uint32_t num_faces = 0;
   uint32_t num_points = 0;
+  // Vertices of the file that no face uses. Where they are not sent, the server
+  // cannot count them, and its reports are completed.
+  uint32_t num_unused_vertices = 0;
 };
 
 }  // namespace marrow::client

@@ -164,11 +164,18 @@ void AddFlags(CLI::App& app, Flags& flags) {
 
 // A socket in the place of a closed standard stream would receive what is
 // printed.
-void OpenStandardStreams() {
+void OpenStandardStreams(int, char**, char**) {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(fd, F_GETFD) < 0) open("/dev/null", O_RDWR);
   }
 }
+
+// In main it would be too late: gRPC opens an eventfd when it is loaded. What
+// stands in this section of a program runs before the initialisers of its
+// libraries.
+using Initialiser = void (*)(int, char**, char**);
+[[gnu::section(".preinit_array"),
+  gnu::used]] const Initialiser kBeforeLibraries = &OpenStandardStreams;
 
 sigset_t StopSignals() {
   sigset_t set;
@@ -254,7 +261,6 @@ int Serve(const Flags& flags, const StopSignal& stop, JsonLog& log) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  OpenStandardStreams();
   const StopSignal& stop = TakeStopSignals();
   signal(SIGPIPE, SIG_IGN);
 

@@ -74,6 +74,7 @@ absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
   MARROW_ASSIGN_OR_RETURN(
       const Input input,
       LoadInput(arguments.file, arguments.service.quantize, deadline));
+  TellWarning(arguments.service, arguments.file, input);
   MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   MARROW_ASSIGN_OR_RETURN(CutAnswer answer,
                           AskForCut(arguments, input.payload, deadline, call));
@@ -102,6 +103,7 @@ absl::Status CutFile(const CutArguments& arguments, ServiceCall& call) {
 }  // namespace
 
 int RunCut(const CutArguments& arguments) {
+  WarnOfIdleOptions(arguments.service, arguments.method);
   ServiceCall call(arguments.service);
   const absl::Status status = CutFile(arguments, call);
   if (status.ok() || call.interrupted()) return call.ExitCode(kExitOk);

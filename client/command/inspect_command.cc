@@ -92,6 +92,7 @@ absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {
   MARROW_ASSIGN_OR_RETURN(
       const Input input,
       LoadInput(arguments.file, arguments.service.quantize, deadline));
+  TellWarning(arguments.service, arguments.file, input);
   MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   MARROW_ASSIGN_OR_RETURN(
       const v1::InspectMeshResponse response,

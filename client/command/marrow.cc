@@ -18,11 +18,18 @@ void OnBrokenPipe(int) { reader_is_gone = 1; }
 // A file opened in the place of a closed standard stream would receive what is
 // printed. What stands in for an output cannot be written to, so that the
 // loss is noticed.
-void OpenStandardStreams() {
+void OpenStandardStreams(int, char**, char**) {
   for (const int fd : {0, 1, 2}) {
     if (fcntl(fd, F_GETFD) < 0) open("/dev/null", O_RDONLY);
   }
 }
+
+// In main it would be too late: gRPC opens an eventfd when it is loaded, which
+// would be standard input, and reading that never ends. What stands in this
+// section of a program runs before the initialisers of its libraries.
+using Initialiser = void (*)(int, char**, char**);
+[[gnu::section(".preinit_array"),
+  gnu::used]] const Initialiser kBeforeLibraries = &OpenStandardStreams;
 
 // Whether all that was printed has gone out, or nobody wants it.
 bool FlushOutput() {
@@ -38,7 +45,6 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, OnBrokenPipe);
   // A file that may grow no more is as good as a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  OpenStandardStreams();
   const int code = marrow::client::RunCommandLine(argc, argv);
   if (code > marrow::client::kExitSignal) {
     // Threads of the service in this process may still run.

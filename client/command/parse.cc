@@ -21,7 +21,7 @@ constexpr char kAbout[] =
     "Splits meshes of creatures into a tree of parts, with a skeleton a "
     "level.\n\n"
     "Meshes are OFF, OBJ, PLY, STL, glTF, GLB or Draco files; - is standard "
-    "input, by how it begins.";
+    "input, of whichever format.";
 
 constexpr char kFooter[] = R"(Examples:
   marrow sample humanoid --pose wave -o me.off    a creature to try
@@ -160,6 +160,11 @@ std::string CheckFolder(const std::string& text) {
   return text != "-" ? ""
                      : "results are several files, which standard output "
                        "cannot hold: name a folder (./- for one named -)";
+}
+
+void AddVersion(CLI::App& app) {
+  app.set_version_flag("--version", "marrow " MARROW_VERSION,
+                       "Print the version and exit");
 }
 
 void AddServer(CLI::App& app, std::string& server, const char* otherwise) {
@@ -436,8 +441,6 @@ std::string Complaint(const CLI::App* app, const CLI::Error& error) {
 int RunCommandLine(int argc, const char* const* argv) {
   CLI::App app(kAbout, "marrow");
   Arguments arguments;
-  app.set_version_flag("--version", "marrow " MARROW_VERSION,
-                       "Print the version and exit");
   app.require_subcommand(1);
   app.footer(kFooter);
   app.failure_message(Complaint);
@@ -447,6 +450,9 @@ int RunCommandLine(int argc, const char* const* argv) {
   AddSpectrum(app, arguments.spectrum);
   AddSample(app, arguments.sample);
   AddHealth(app, arguments.health_server);
+  AddVersion(app);
+  for (CLI::App* subcommand : app.get_subcommands(nullptr))
+    AddVersion(*subcommand);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

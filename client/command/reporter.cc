@@ -90,6 +90,11 @@ void Reporter::Event(size_t file, const v1::SegmentEvent& event) {
   }
 }
 
+void Reporter::Warn(size_t file, const std::string& warning) {
+  absl::MutexLock lock(&mutex_);
+  files_[file].warnings.push_back(warning);
+}
+
 void Reporter::Succeeded(size_t file, std::string line, json details) {
   absl::MutexLock lock(&mutex_);
   ++succeeded_;

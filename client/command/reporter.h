@@ -29,6 +29,8 @@ class Reporter {
 
   // A call's event, for the file of this index.
   void Event(size_t file, const v1::SegmentEvent& event);
+  // A warning of the client's own, for a person.
+  void Warn(size_t file, const std::string& warning);
   // The file is done. `line` is for a person; `details` for JSON.
   void Succeeded(size_t file, std::string line, nlohmann::json details);
   void Failed(size_t file, const absl::Status& status);

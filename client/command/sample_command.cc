@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/atomic_file.h"
@@ -23,10 +23,12 @@ void PrintSamples() {
   }
 }
 
+bool IsDraco(const std::string& path) {
+  return DetectMeshFormat(path, {}) == MeshFormat::kDraco;
+}
+
 absl::Status WriteSampleMesh(const PolygonMesh& mesh, const std::string& path) {
-  const std::string extension =
-      std::filesystem::path(path).extension().string();
-  if (absl::AsciiStrToLower(extension) != ".drc") return WriteMesh(mesh, path);
+  if (!IsDraco(path)) return WriteMesh(mesh, path);
   MARROW_ASSIGN_OR_RETURN(const EncodedMesh encoded,
                           EncodeMesh(mesh, EncodeOptions()));
   return WriteFileAtomically(path, encoded.bytes);
@@ -35,9 +37,14 @@ absl::Status WriteSampleMesh(const PolygonMesh& mesh, const std::string& path) {
 // The parts of a .drc are in the order in which it was made, not in that in
 // which it decodes, so the two do not go together.
 absl::Status CheckOutputs(const SampleArguments& arguments) {
-  const std::string extension =
-      std::filesystem::path(arguments.output).extension().string();
-  if (!arguments.parts.empty() && absl::AsciiStrToLower(extension) == ".drc") {
+  const MeshFormat format = DetectMeshFormat(arguments.output, {});
+  if (format == MeshFormat::kUnknown || format == MeshFormat::kGltf) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(arguments.output,
+                     ": cannot write this format; use .off, .obj, .ply, .stl "
+                     "or .drc"));
+  }
+  if (!arguments.parts.empty() && format == MeshFormat::kDraco) {
     return absl::InvalidArgumentError(
         "--parts needs a mesh that keeps its face order: use -o with .off, "
         ".obj, .ply or .stl");

@@ -87,6 +87,7 @@ class SegmentRun {
     MARROW_ASSIGN_OR_RETURN(
         const Input input,
         LoadInput(path, arguments_.service.quantize, deadline));
+    if (!input.warning.empty()) reporter_.Warn(file, input.warning);
     MARROW_ASSIGN_OR_RETURN(
         Segmentation answer,
         call_.client().Segment(input.payload, ToRequest(arguments_),
@@ -147,6 +148,7 @@ int RunSegment(const SegmentArguments& arguments) {
     TellFailure("", status, arguments.service.json);
     return kExitUsage;
   }
+  WarnOfIdleOptions(arguments.service, arguments.method);
   ServiceCall call(arguments.service);
   const auto made = PrepareFolder(arguments.folder);
   absl::Status status = made.status();

@@ -56,8 +56,29 @@ absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize,
   input.order = std::move(loaded.encoded.order);
   input.payload = {.draco = std::move(loaded.encoded.bytes),
                    .num_faces = input.order.NumDecodedFaces(),
-                   .num_points = input.order.NumDecodedPoints()};
+                   .num_points = input.order.NumDecodedPoints(),
+                   .num_unused_vertices = input.order.NumUnusedVertices()};
+  if (loaded.sent_as_it_is && quantize > 0) {
+    input.warning =
+        "--quantize has no effect on a Draco file, which is sent as it is";
+  }
   return input;
+}
+
+void TellWarning(const ServiceArguments& arguments, const std::string& file,
+                 const Input& input) {
+  if (arguments.quiet || input.warning.empty()) return;
+  absl::FPrintF(stderr, "marrow: %s: warning: %s\n", file, input.warning);
+}
+
+// Of the method's options, kappa alone is heeded by one method and not by the
+// other.
+void WarnOfIdleOptions(const ServiceArguments& arguments,
+                       const MethodArguments& method) {
+  if (arguments.quiet || !method.kappa || method.method == v1::METHOD_PAPER)
+    return;
+  absl::FPrintF(stderr,
+                "marrow: warning: --kappa has no effect with --method merge\n");
 }
 
 int TellFailure(const std::string& file, const absl::Status& status,

@@ -46,9 +46,16 @@ struct Input {
   PolygonMesh mesh;
   OrderMap order;
   Payload payload;
+  std::string warning;  // of an option that had no effect; or empty
 };
 absl::StatusOr<Input> LoadInput(const std::string& path, uint32_t quantize,
                                 absl::Time deadline);
+
+// Each tells a person on standard error, unless they are to be quiet.
+void TellWarning(const ServiceArguments& arguments, const std::string& file,
+                 const Input& input);
+void WarnOfIdleOptions(const ServiceArguments& arguments,
+                       const MethodArguments& method);
 
 // Tells a failure, as a line for a person or as JSON, and gives its exit code.
 int TellFailure(const std::string& file, const absl::Status& status, bool json);

@@ -145,6 +145,7 @@ absl::Status ComputeSpectrum(const SpectrumArguments& arguments,
   MARROW_ASSIGN_OR_RETURN(
       const Input input,
       LoadInput(arguments.file, arguments.service.quantize, deadline));
+  TellWarning(arguments.service, arguments.file, input);
   MARROW_RETURN_IF_ERROR(call.Connect(deadline));
   v1::ComputeSpectrumRequest parameters;
   if (arguments.pairs) parameters.set_eigen_pairs(*arguments.pairs);

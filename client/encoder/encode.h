@@ -17,10 +17,10 @@ enum class EncodeMethod { kAuto, kEdgebreaker, kSequential };
 inline constexpr int kMaxQuantizationBits = 24;
 
 struct EncodeOptions {
-  // kAuto takes edgebreaker, which is smaller, where it keeps every face and
-  // vertex and is quick, and sequential otherwise: where a triangle has two
-  // corners at one position, a vertex has no face, or vertices have so many
-  // faces that edgebreaker takes quadratic time.
+  // kAuto takes edgebreaker, which is smaller, where it keeps every face and is
+  // quick, and sequential otherwise: where a triangle has two corners at one
+  // position, or vertices have so many faces that edgebreaker takes quadratic
+  // time.
   EncodeMethod method = EncodeMethod::kAuto;
   int speed = 5;  // 0 (smallest) to 10 (quickest), both for encode and decode
   // Bits a coordinate, 1 to kMaxQuantizationBits; 0 sends the numbers as they
@@ -38,10 +38,9 @@ struct EncodedMesh {
 };
 
 // Polygons are triangulated and vertices at one position (to the bit) become
-// one; nothing else is changed, but that vertices without a face are left out
-// where the mesh has more than three vertices a face, which Draco cannot hold.
-// Edgebreaker drops triangles with two corners at one position, and vertices
-// without a face. Equal input gives equal bytes.
+// one; vertices without a face are left out, whatever their coordinates;
+// nothing else is changed. Edgebreaker drops triangles with two corners at one
+// position. Equal input gives equal bytes.
 //
 // Errors: INVALID_ARGUMENT where an option is out of range, no face has three
 // corners, or the method that was asked for cannot represent the mesh;

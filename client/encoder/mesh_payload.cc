@@ -83,6 +83,7 @@ absl::StatusOr<MeshPayload> PayloadFromDraco(std::string bytes,
   payload.mesh = ToPolygons(decoded);
   payload.encoded.order = OrderMap(payload.mesh, IdentityOrigin(decoded));
   payload.encoded.bytes = std::move(bytes);
+  payload.sent_as_it_is = true;
   return payload;
 }
 

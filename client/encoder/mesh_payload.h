@@ -15,6 +15,7 @@ namespace marrow {
 struct MeshPayload {
   PolygonMesh mesh;  // in the file's order
   EncodedMesh encoded;
+  bool sent_as_it_is = false;  // a Draco file, for which no option counts
 };
 
 // For Draco bytes: they are sent as they are, and the order of the file is that

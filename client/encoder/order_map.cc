@@ -123,6 +123,11 @@ OrderMap::OrderMap(const PolygonMesh& mesh, const PayloadOrigin& origin)
   }
 }
 
+uint32_t OrderMap::NumUnusedVertices() const {
+  return static_cast<uint32_t>(
+      std::count(point_of_vertex_.begin(), point_of_vertex_.end(), kNone));
+}
+
 absl::StatusOr<std::vector<uint32_t>> OrderMap::FaceLabelsInFileOrder(
     std::span<const uint32_t> decoded_face_labels) const {
   MARROW_RETURN_IF_ERROR(

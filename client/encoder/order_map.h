@@ -38,6 +38,9 @@ class OrderMap {
     return static_cast<uint32_t>(vertex_of_point_.size());
   }
 
+  // Vertices of the file that no face uses.
+  uint32_t NumUnusedVertices() const;
+
   // A label a face of the file. A polygon has that of its largest triangle,
   // whatever the labels: so what is nested on triangles is on polygons.
   // INTERNAL unless there is a label a decoded face.

@@ -50,25 +50,33 @@ class PointTable {
   absl::flat_hash_map<Corners, uint32_t> points_;
 };
 
-std::vector<bool> UsedSites(const PointMesh& points) {
-  std::vector<bool> used(points.sites.rows.size(), false);
-  for (const Corners& corners : points.site_corners) {
-    for (const uint32_t site : corners) used[site] = true;
+std::vector<bool> UsedSites(const PolygonMesh& mesh,
+                            const CornerTriangles& triangles,
+                            const DistinctRows<double, 3>& sites) {
+  std::vector<bool> used(sites.rows.size(), false);
+  for (const Corners& corners : triangles.corners) {
+    for (const uint32_t corner : corners)
+      used[sites.index[mesh.face_vertices[corner]]] = true;
   }
   return used;
 }
 
-// Points that no face has come last, unless there are so many that Draco would
-// not decode them: it allows three points a face.
-void AddUnusedPoints(const std::vector<bool>& used, PointTable* table,
-                     PointMesh* points) {
-  const size_t unused =
-      static_cast<size_t>(std::count(used.begin(), used.end(), false));
-  if (points->point_site.size() + unused > 3 * points->faces.size()) return;
-  for (uint32_t s = 0; s < used.size(); ++s) {
-    if (!used[s]) table->FindOrAdd({s, 0, 0});
+// Renumbers: sites that are used come first, in their order, and only they keep
+// their row.
+void PutUsedFirst(const std::vector<bool>& used,
+                  DistinctRows<double, 3>* sites) {
+  std::vector<uint32_t> renumbered(used.size());
+  uint32_t next = 0;
+  for (const bool turn : {true, false}) {
+    for (uint32_t s = 0; s < used.size(); ++s) {
+      if (used[s] != turn) continue;
+      if (turn) sites->rows[next] = sites->rows[s];
+      renumbered[s] = next++;
+    }
   }
-  points->has_unused_points = unused > 0;
+  sites->rows.resize(
+      static_cast<size_t>(std::count(used.begin(), used.end(), true)));
+  for (uint32_t& site : sites->index) site = renumbered[site];
 }
 
 bool KeptByEdgebreaker(const Corners& sites) {
@@ -125,6 +133,7 @@ PointMesh BuildPointMesh(const PolygonMesh& mesh,
                          bool keep_attributes) {
   PointMesh points;
   points.sites = FindDistinct(mesh.positions);
+  PutUsedFirst(UsedSites(mesh, triangles, points.sites), &points.sites);
   const bool has_uvs = keep_attributes && !mesh.corner_uvs.empty();
   const bool has_normals = keep_attributes && !mesh.corner_normals.empty();
   if (has_uvs) points.uvs = FindDistinct(mesh.corner_uvs);
@@ -136,12 +145,10 @@ PointMesh BuildPointMesh(const PolygonMesh& mesh,
     }
     points.site_corners.push_back(sites);
   }
-  const std::vector<bool> used = UsedSites(points);
   PointTable table(&points);
   if (!has_uvs && !has_normals) {
-    for (uint32_t s = 0; s < used.size(); ++s) {
-      if (used[s]) table.FindOrAdd({s, 0, 0});
-    }
+    for (uint32_t s = 0; s < points.sites.rows.size(); ++s)
+      table.FindOrAdd({s, 0, 0});
   }
   for (size_t t = 0; t < triangles.corners.size(); ++t) {
     Corners corners;
@@ -153,12 +160,10 @@ PointMesh BuildPointMesh(const PolygonMesh& mesh,
     }
     points.faces.push_back(corners);
   }
-  AddUnusedPoints(used, &table, &points);
   return points;
 }
 
 bool SuitsEdgebreaker(const PointMesh& points) {
-  if (points.has_unused_points) return false;
   std::vector<uint64_t> degrees(points.sites.rows.size(), 0);
   for (const Corners& sites : points.site_corners) {
     if (!KeptByEdgebreaker(sites)) return false;

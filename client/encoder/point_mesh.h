@@ -30,29 +30,31 @@ struct CornerTriangles {
 };
 
 struct PointMesh {
-  DistinctRows<double, 3> sites;  // of the file's vertices
-  DistinctRows<float, 2> uvs;     // of corners; empty where not sent
+  // Of the file's vertices. Only sites of triangles have a row: an index beyond
+  // is of a place where no triangle has a corner.
+  DistinctRows<double, 3> sites;
+  DistinctRows<float, 2> uvs;  // of corners; empty where not sent
   DistinctRows<float, 3> normals;
   std::vector<Corners> faces;         // points
   std::vector<Corners> site_corners;  // sites, parallel to faces
   std::vector<uint32_t> point_site;
   std::vector<uint32_t> point_uv;
   std::vector<uint32_t> point_normal;
-  bool has_unused_points = false;  // that no face has
 };
 
 // Triangles of every face, in the order of faces; a face with fewer than three
 // corners has none. Deterministic.
 CornerTriangles TriangulateAll(const PolygonMesh& mesh);
 
-// Points are numbered in an order that the file alone decides. Those that no
-// face has come last; where there are more than three points a face, which
-// Draco does not decode, they are left out.
+// Points are numbered in an order that the file alone decides. Vertices that no
+// triangle has are left out: Draco decodes three points a face at most, and
+// they may be anywhere, not finite or so far away that quantizing would leave
+// the others no digits.
 PointMesh BuildPointMesh(const PolygonMesh& mesh,
                          const CornerTriangles& triangles,
                          bool keep_attributes);
 
-// Whether edgebreaker keeps every triangle and point, and is quick.
+// Whether edgebreaker keeps every triangle, and is quick.
 bool SuitsEdgebreaker(const PointMesh& mesh);
 
 }  // namespace marrow

@@ -12,6 +12,7 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -143,18 +144,25 @@ bool EndsWith(std::string_view text, std::string_view end) {
          text.substr(text.size() - end.size()) == end;
 }
 
+// Whether an OBJ may begin so.
+bool IsObjKeyword(std::string_view token) {
+  constexpr std::string_view kKeywords[] = {"v", "vt", "vn",     "f",     "g",
+                                            "o", "s",  "usemtl", "mtllib"};
+  return std::count(std::begin(kKeywords), std::end(kKeywords), token) > 0;
+}
+
 MeshFormat FormatOfContent(const std::string& path, std::string_view bytes) {
   if (bytes.substr(0, 5) == "DRACO") return MeshFormat::kDraco;
   if (bytes.substr(0, 4) == "glTF") return MeshFormat::kGltf;
+  // A size is no accident, and the beginning of a binary STL may be any words.
+  if (HasSizeOfBinaryStl(bytes)) return MeshFormat::kStl;
   constexpr size_t kBeginningBytes = 4096;
   TextScanner scanner(path, bytes.substr(0, kBeginningBytes));
   const std::string_view first = scanner.NextTokenAcrossLines();
   if (first == "ply") return MeshFormat::kPly;
   if (first == "solid") return MeshFormat::kStl;
   if (EndsWith(first, "OFF")) return MeshFormat::kOff;
-  if (first == "v" || first == "o" || first == "g" || first == "mtllib") {
-    return MeshFormat::kObj;
-  }
+  if (IsObjKeyword(first)) return MeshFormat::kObj;
   if (first.substr(0, 1) == "{") return MeshFormat::kGltf;
   return MeshFormat::kUnknown;
 }

@@ -15,7 +15,7 @@ namespace marrow {
 enum class MeshFormat { kUnknown, kOff, kObj, kPly, kStl, kGltf, kDraco };
 
 // By the extension of `path`, in either case; where that says nothing, by how
-// `bytes` begin.
+// `bytes` begin, and by how many a binary STL has.
 MeshFormat DetectMeshFormat(const std::string& path, std::string_view bytes);
 
 // The whole file; of "-", standard input to its end. Errors name the path:

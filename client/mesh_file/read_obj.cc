@@ -41,8 +41,11 @@ class ObjReader {
   bool Parse(std::string_view token, double* number) {
     return precision_.Parse(token, number);
   }
+  // A row of N numbers, of which those beyond `needed` may be left out: then
+  // they are 0.
   template <typename T, size_t N>
-  absl::Status ReadNumbers(std::vector<std::array<T, N>>* rows);
+  absl::Status ReadNumbers(std::vector<std::array<T, N>>* rows,
+                           size_t needed = N);
   template <size_t N>
   static std::vector<std::array<float, N>> Expand(
       const std::vector<std::array<float, N>>& rows,
@@ -65,14 +68,17 @@ class ObjReader {
 };
 
 template <typename T, size_t N>
-absl::Status ObjReader::ReadNumbers(std::vector<std::array<T, N>>* rows) {
+absl::Status ObjReader::ReadNumbers(std::vector<std::array<T, N>>* rows,
+                                    size_t needed) {
   std::array<T, N> row = {};
-  for (T& number : row) {
+  for (size_t i = 0; i < N; ++i) {
     const std::string_view token = scanner_.NextToken();
+    if (token.empty() && i >= needed) break;
     if (token.empty()) {
-      return scanner_.Error(absl::StrCat("needs ", N, " numbers"));
+      return scanner_.Error(
+          absl::StrCat("needs ", needed, needed == 1 ? " number" : " numbers"));
     }
-    if (!Parse(token, &number)) {
+    if (!Parse(token, &row[i])) {
       return scanner_.Error(absl::StrCat(Quoted(token), " is not a number"));
     }
   }
@@ -137,7 +143,7 @@ absl::Status ObjReader::ReadFace() {
 absl::Status ObjReader::ReadLine() {
   const std::string_view keyword = scanner_.NextToken();
   if (keyword == "v") return ReadNumbers(&mesh_.positions);
-  if (keyword == "vt") return ReadNumbers(&uvs_);
+  if (keyword == "vt") return ReadNumbers(&uvs_, 1);
   if (keyword == "vn") return ReadNumbers(&normals_);
   if (keyword == "f" || keyword == "fo") return ReadFace();
   return absl::OkStatus();

@@ -40,9 +40,7 @@ uint64_t DeclaredBytes(std::string_view bytes) {
 // Binary files whose header begins with "solid" are common, so the size
 // decides before the text does, and so does a byte that no text has.
 bool IsBinary(std::string_view bytes) {
-  if (bytes.size() >= kHeaderBytes && DeclaredBytes(bytes) == bytes.size()) {
-    return true;
-  }
+  if (HasSizeOfBinaryStl(bytes)) return true;
   if (bytes.substr(0, 1024).find('\0') != std::string_view::npos) return true;
   TextScanner scanner("", bytes.substr(0, kHeaderBytes));
   return !Is(scanner.NextTokenAcrossLines(), "solid");
@@ -143,6 +141,10 @@ absl::StatusOr<PolygonMesh> ReadText(const std::string& path,
 }
 
 }  // namespace
+
+bool HasSizeOfBinaryStl(std::string_view bytes) {
+  return bytes.size() > kHeaderBytes && DeclaredBytes(bytes) == bytes.size();
+}
 
 absl::StatusOr<PolygonMesh> ReadStl(const std::string& path,
                                     std::string_view bytes) {

@@ -20,6 +20,11 @@ absl::StatusOr<PolygonMesh> ReadPly(const std::string& path,
                                     std::string_view bytes);
 absl::StatusOr<PolygonMesh> ReadStl(const std::string& path,
                                     std::string_view bytes);
+
+// Whether these are as many bytes as a binary STL has by its own count of
+// triangles, of which there is one at least.
+bool HasSizeOfBinaryStl(std::string_view bytes);
+
 absl::StatusOr<PolygonMesh> ReadGltf(const std::string& path,
                                      std::string_view bytes);
 

@@ -406,6 +406,18 @@ TEST_F(MarrowSegmentTest, QuietTellsNothing) {
   EXPECT_THAT(run.err, IsEmpty());
 }
 
+TEST_F(MarrowSegmentTest, AnOptionOfTheOtherMethodIsWarnedOf) {
+  const std::string mesh = folder_ / "one.off";
+  WriteFile(mesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string warning =
+      "marrow: warning: --kappa has no effect with --method merge\n";
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--method", "merge"}).err, warning);
+  EXPECT_EQ(Segment({mesh, "--kappa", "2"}).err, warning);
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--quiet"}).err, "");
+  EXPECT_EQ(Segment({mesh, "--kappa", "2", "--method", "paper"}).err, "");
+  EXPECT_EQ(Segment({mesh, "--delta", "0.2", "--epsilon", "0.02"}).err, "");
+}
+
 TEST_F(MarrowSegmentTest, ASingleTriangleIsOneSegment) {
   WriteFile(folder_ / "one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   const Finished run = Segment({folder_ / "one.off"});
@@ -420,6 +432,7 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
             "5 5 5\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 5 6\n");
   const Finished run = Segment({folder_ / "two.off"});
   EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("two.off: warning: 1 vertex is in no face"));
   EXPECT_THAT(run.err, HasSubstr("two.off: warning: the mesh is 2 bodies"));
   const json result = json::parse(ReadFile(Out("two.json")));
   std::vector<std::string> codes;
@@ -428,6 +441,7 @@ TEST_F(MarrowSegmentTest, WarningsAreToldAndKept) {
     EXPECT_FALSE(warning["message"].get<std::string>().empty());
   }
   EXPECT_THAT(codes, ElementsAre("UNUSED_POINTS", "SEVERAL_BODIES"));
+  EXPECT_EQ(result["report"]["unused_points"], 1);
 
   const Finished events = Segment({folder_ / "two.off", "--json", "--quiet"});
   EXPECT_THAT(events.out, HasSubstr("\"event\":\"warning\""));

@@ -53,6 +53,14 @@ TEST(MarrowTest, TellsItsVersion) {
   const Finished run = Marrow({"--version"});
   EXPECT_EQ(run.code, 0);
   EXPECT_THAT(run.out, ::testing::MatchesRegex("marrow [0-9.]+\n"));
+  for (const char* command :
+       {"segment", "cut", "inspect", "spectrum", "sample", "health"}) {
+    const Finished alone = Marrow({command, "--version"});
+    EXPECT_EQ(alone.code, 0) << command << alone.err;
+    EXPECT_EQ(alone.out, run.out) << command;
+    EXPECT_THAT(Marrow({command, "--help"}).out, HasSubstr("--version"));
+  }
+  EXPECT_EQ(Marrow({"segment", "none.off", "--version"}).out, run.out);
 }
 
 TEST(MarrowTest, ACommandLineThatMakesNoSenseIsAUsageError) {
@@ -170,8 +178,31 @@ TEST(MarrowTest, InspectTellsWhatWillBeDone) {
       Marrow({"inspect", folder / "t.off", "--json"}).out)["report"];
   EXPECT_EQ(report["flipped_faces"], 1);
   EXPECT_TRUE(report["genus"].is_null());
-  EXPECT_EQ(report["findings"][0]["code"], "FLIPPED_FACES");
-  EXPECT_EQ(report["findings"][1]["code"], "BOUNDARIES");
+  std::vector<std::string> codes;
+  for (const json& finding : report["findings"])
+    codes.push_back(finding["code"]);
+  EXPECT_THAT(codes, ::testing::ElementsAre("WELDED_POINTS", "FLIPPED_FACES",
+                                            "BOUNDARIES", "UNUSED_POINTS"));
+}
+
+// So many of them that no payload could hold them, and some nowhere.
+TEST(MarrowTest, CountsVerticesOfNoFaceHoweverMany) {
+  const TemporaryFolder folder;
+  std::string text = "OFF\n100004 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  for (int i = 0; i < 50'000; ++i) text += "1e30 nan inf\n7 7 7\n";
+  WriteFile(folder / "t.off", text + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  for (const char* command : {"inspect", "spectrum"}) {
+    const Finished run =
+        Marrow({command, folder / "t.off", "--json", "--quantize", "12"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    const json report = json::parse(run.out)["report"];
+    EXPECT_EQ(report["unused_points"], 100'000) << command;
+    ASSERT_EQ(report["findings"].size(), 1u) << command;
+    EXPECT_EQ(report["findings"][0]["code"], "UNUSED_POINTS");
+    EXPECT_EQ(report["findings"][0]["count"], 100'000);
+  }
+  EXPECT_THAT(Marrow({"inspect", folder / "t.off"}).out,
+              HasSubstr("100000 vertices are in no face"));
 }
 
 TEST(MarrowTest, InspectTellsWhatIsWrong) {
@@ -317,6 +348,27 @@ TEST(MarrowTest, ImpossibleSamplesAreUsageErrors) {
     EXPECT_EQ(Marrow(arguments).code, 2) << arguments[1];
   }
   EXPECT_THAT(ListFolder(folder.path()), IsEmpty());
+  EXPECT_THAT(Marrow({"sample", "hand", "-o", folder / "x.xyz"}).err,
+              HasSubstr("x.xyz: cannot write this format; use .off, .obj, "
+                        ".ply, .stl or .drc"));
+}
+
+TEST(MarrowTest, QuantizingWhatIsSentAsItIsIsWarnedOf) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "hand.drc";
+  ASSERT_EQ(Marrow({"sample", "hand", "--faces", "5000", "-o", path}).code, 0);
+  const std::string warning = "marrow: " + path +
+                              ": warning: --quantize has no effect on a Draco "
+                              "file, which is sent as it is\n";
+  EXPECT_EQ(Marrow({"inspect", path, "--quantize", "9"}).err, warning);
+  EXPECT_EQ(Marrow({"spectrum", path, "-k", "2", "--quantize", "9"}).err,
+            warning);
+  EXPECT_EQ(Marrow({"segment", path, "--levels", "1", "--quantize", "9", "-o",
+                    folder / "out"})
+                .err,
+            warning);
+  EXPECT_EQ(Marrow({"inspect", path, "--quantize", "9", "-q"}).err, "");
+  EXPECT_EQ(Marrow({"inspect", path}).err, "");
 }
 
 TEST(MarrowTest, AServerThatIsNotThereIsToldWithinSeconds) {
@@ -349,6 +401,16 @@ TEST(MarrowTest, AnEndlessFileIsRefused) {
   const Finished run = Marrow({"inspect", "/dev/zero"});
   EXPECT_EQ(run.code, 1);
   EXPECT_THAT(run.err, HasSubstr("/dev/zero: is larger than 1 GiB"));
+}
+
+TEST(MarrowTest, AClosedInputIsEmpty) {
+  for (const char* command : {"inspect", "spectrum", "segment -q"}) {
+    const Finished run = RunProgram(
+        {"/bin/sh", "-c",
+         "timeout 20 " + ProgramPath("marrow") + " " + command + " - <&-"});
+    EXPECT_EQ(run.code, 1) << command;
+    EXPECT_THAT(run.err, HasSubstr("marrow: -: is empty")) << command;
+  }
 }
 
 TEST(MarrowTest, AFullDiskIsNoSuccess) {

@@ -236,7 +236,7 @@ TEST(EncodeMeshTest, AutoTakesEdgebreakerWhereItKeepsEverything) {
   EXPECT_EQ(method(Torus(false)), EncodeMethod::kEdgebreaker);
   EXPECT_EQ(method(NonManifold()), EncodeMethod::kEdgebreaker);
   EXPECT_EQ(method(Degenerate()), EncodeMethod::kSequential);
-  EXPECT_EQ(method(Isolated()), EncodeMethod::kSequential);
+  EXPECT_EQ(method(Isolated()), EncodeMethod::kEdgebreaker);
 }
 
 TEST(EncodeMeshTest, AHugeFanIsEncodedQuickly) {
@@ -278,8 +278,26 @@ TEST(EncodeMeshTest, SendsPositionsAlone) {
   }
 }
 
-// Draco does not decode more than three points a face.
-TEST(EncodeMeshTest, LeavesOutUnusedVerticesThatDracoCannotHold) {
+// Wherever they are, they change nothing of what is sent.
+TEST(EncodeMeshTest, LeavesOutUnusedVertices) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const PolygonMesh torus = Torus(false);
+  PolygonMesh mesh = torus;
+  for (const double x : {0.1, 1e300, kInfinity, -kInfinity, std::nan("")}) {
+    mesh.positions.push_back({x, 0, 0});
+    mesh.positions.push_back({x, 0, 0});
+  }
+  mesh.positions.push_back(mesh.positions[0]);
+  for (const int bits : {0, 10}) {
+    const EncodeOptions options{.quantization_bits = bits};
+    const auto encoded = EncodeMesh(mesh, options);
+    ASSERT_TRUE(encoded.ok()) << encoded.status();
+    EXPECT_EQ(encoded->bytes, EncodeMesh(torus, options)->bytes);
+    EXPECT_EQ(encoded->order.NumUnusedVertices(), 11u);
+  }
+}
+
+TEST(EncodeMeshTest, LeavesOutMoreUnusedVerticesThanDracoHolds) {
   PolygonMesh mesh;
   for (int i = 0; i < 20; ++i) {
     mesh.positions.push_back(

@@ -26,11 +26,28 @@ TEST(DetectMeshFormatTest, GoesByExtensionThenByContent) {
   EXPECT_EQ(DetectMeshFormat("a", "ply\nformat"), MeshFormat::kPly);
   EXPECT_EQ(DetectMeshFormat("a.txt", kOff), MeshFormat::kOff);
   EXPECT_EQ(DetectMeshFormat("a", "# x\nv 0 0 0\n"), MeshFormat::kObj);
+  for (const std::string keyword :
+       {"f", "g", "o", "s", "vn", "vt", "usemtl", "mtllib"}) {
+    EXPECT_EQ(DetectMeshFormat("-", keyword + " 1\n"), MeshFormat::kObj);
+  }
   EXPECT_EQ(DetectMeshFormat("a", "solid x\n"), MeshFormat::kStl);
   EXPECT_EQ(DetectMeshFormat("a", "DRACO\x02\x02"), MeshFormat::kDraco);
   EXPECT_EQ(DetectMeshFormat("a", "glTF"), MeshFormat::kGltf);
   EXPECT_EQ(DetectMeshFormat("a", "{\"asset\""), MeshFormat::kGltf);
   EXPECT_EQ(DetectMeshFormat("a.png", "\x89PNG"), MeshFormat::kUnknown);
+}
+
+// Its header may be anything; its number of triangles gives its size.
+TEST(DetectMeshFormatTest, KnowsABinaryStlByItsSize) {
+  std::string stl = "OFF by its name";
+  stl.resize(80, ' ');
+  stl += std::string("\x02\0\0\0", 4) + std::string(100, '\0');
+  EXPECT_EQ(DetectMeshFormat("-", stl), MeshFormat::kStl);
+  EXPECT_EQ(ParseOrFail("-", stl).NumFaces(), 2u);
+  stl[0] = '\0';
+  EXPECT_EQ(DetectMeshFormat("-", stl), MeshFormat::kStl);
+  EXPECT_EQ(DetectMeshFormat("-", stl + " "), MeshFormat::kUnknown);
+  EXPECT_EQ(DetectMeshFormat("-", std::string(84, '\0')), MeshFormat::kUnknown);
 }
 
 TEST(ParseMeshTest, FindsTheFormatOfAnUnknownExtension) {

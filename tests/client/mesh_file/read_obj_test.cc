@@ -59,6 +59,14 @@ TEST(ReadObjTest, ReadsWhatCornersCarry) {
   EXPECT_THAT(mesh.corner_normals[3], ElementsAre(0, 0, 1));
 }
 
+TEST(ReadObjTest, ReadsTextureCoordinatesOfOneNumber) {
+  const PolygonMesh mesh = ParseOrFail(
+      "m.obj", std::string(kTetrahedron) + "vt 0.5\nf 1/1 2/1 3/1\n");
+  ASSERT_EQ(mesh.corner_uvs.size(), 3u);
+  EXPECT_THAT(mesh.corner_uvs[0], ElementsAre(0.5f, 0));
+  ExpectRefused("m.obj", "vt\n", {"line 1", "needs 1 number"});
+}
+
 TEST(ReadObjTest, LeavesOutWhatSomeCornersLack) {
   const PolygonMesh mesh =
       ParseOrFail("m.obj", std::string(kTetrahedron) +

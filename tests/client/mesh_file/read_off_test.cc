@@ -56,6 +56,68 @@ TEST(ReadOffTest, ReadsItsVariants) {
   EXPECT_THAT(homogeneous.positions[2], ElementsAre(0, 3, 0));
 }
 
+TEST(ReadOffTest, ReadsCountsOnLinesOfTheirOwn) {
+  const std::string rest = "5 5 5\n6 5 5\n5 6 5\n3 0 1 2\n";
+  for (const std::string header :
+       {"OFF\n3\n1\n0\n", "OFF 3\n1 0\n", "OFF\n3 1\n\n 0 # edges\n",
+        "OFF\n3\n1\n", "3\n1\n0\n"}) {
+    const PolygonMesh mesh = ParseOrFail("m.off", header + rest);
+    EXPECT_THAT(mesh.positions,
+                ElementsAre(ElementsAre(5, 5, 5), ElementsAre(6, 5, 5),
+                            ElementsAre(5, 6, 5)))
+        << header;
+    EXPECT_THAT(Faces(mesh), ElementsAre(ElementsAre(0, 1, 2))) << header;
+  }
+}
+
+// As Geomview takes them: vertices are numbers, whatever the lines.
+TEST(ReadOffTest, ReadsVerticesWhateverTheirLines) {
+  const std::string faces = "3 0 1 2\n3 0 2 3 255 0 0\n";
+  for (const std::string vertices :
+       {"OFF\n4 2 5\n0 0 0 1 0 0\n1 1 0 0 1 0\n",
+        "OFF 4 2 5\n0 0 0 1 0 0 1 1 0 0 1 0\n",
+        "OFF 4 2 5 0 0 0 1\n0 0 1 1 0\n0 1 0\n",
+        "OFF\n4 2 5\n0\n0\n0\n1\n0\n0\n1\n1\n0\n0\n1\n0\n",
+        "NOFF\n4 2 5\n0 0 0 0 0 1 1 0 0 0 0 1\n"
+        "1 1 0 0 0 1 0 1 0 0 0 1\n",
+        "C4OFF\n4 2 5\n0 0 0 1 1 0 0 1 1 0 0 1\n1 0 0 1\n"
+        "1 1 0 1 1 0 0 1 0 1 0 1 1 0 0 1\n"}) {
+    // The edges, which may follow, make as many lines as usual.
+    for (const std::string rest : {"", "2 0 1\n2 1 2\n2 2 3\n2 3 0\n"}) {
+      const PolygonMesh mesh = ParseOrFail("m.off", vertices + faces + rest);
+      EXPECT_THAT(mesh.positions,
+                  ElementsAre(ElementsAre(0, 0, 0), ElementsAre(1, 0, 0),
+                              ElementsAre(1, 1, 0), ElementsAre(0, 1, 0)))
+          << vertices << rest;
+      EXPECT_THAT(Faces(mesh),
+                  ElementsAre(ElementsAre(0, 1, 2), ElementsAre(0, 2, 3)))
+          << vertices << rest;
+    }
+  }
+}
+
+TEST(ReadOffTest, ColoursAreNoVerticesWhateverFollows) {
+  const std::string text =
+      "4 2 0\n0 0 0 1 0 0\n1 0 0 1 0 0\n1 1 0 1 0 0\n0 1 0 1 0 0\n"
+      "3 0 1 2\n3 0 2 3\n";
+  for (const std::string header : {"OFF\n", "COFF\n", "NOFF\n"}) {
+    for (const std::string rest : {"", "2 0 1\n2 1 2\n"}) {
+      const PolygonMesh mesh = ParseOrFail("m.off", header + text + rest);
+      EXPECT_THAT(mesh.positions[1], ElementsAre(1, 0, 0)) << header << rest;
+      EXPECT_THAT(Faces(mesh)[1], ElementsAre(0, 2, 3)) << header << rest;
+    }
+  }
+}
+
+TEST(ReadOffTest, RefusesAVertexThatLacksANumber) {
+  for (const std::string header : {"OFF\n4 1 0\n", "OFF\n4 1\n"}) {
+    for (const std::string face : {"4 3 0 1 2\n", "3 0 1 2\n"}) {
+      ExpectRefused("m.off", header + "0 0\n1 0 0\n0 1 0\n0 0 1\n" + face,
+                    {"line 7", "0 of 1 faces", "cut off"});
+    }
+  }
+}
+
 TEST(ReadOffTest, ReadsNumbersThatAreNotFinite) {
   const PolygonMesh mesh =
       ParseOrFail("m.off", "OFF\n3 1 0\nnan 0 0\ninf 0 0\n0 -inf 0\n3 0 1 2\n");
