@@ -11,7 +11,7 @@
 namespace marrow {
 
 // Everything, with what is done about it, in a fixed order; empty for a clean
-// closed mesh in one piece. The codes are those that Warning.code documents.
+// closed mesh in one piece. The codes are those that Finding.code documents.
 std::vector<v1::Finding> FindingsAbout(const MeshReport& report);
 
 // The findings that a caller should hear of unasked: ordinary seams, holes,

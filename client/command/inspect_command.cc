@@ -31,14 +31,19 @@ const char* WhyNoGenus(const v1::MeshReport& report) {
   return "the surface has one side";
 }
 
-void PrintForPerson(const std::string& file,
+void PrintForPerson(const std::string& file, const PolygonMesh& mesh,
                     const v1::InspectMeshResponse& response) {
   const v1::MeshReport& report = response.report();
   absl::PrintF("%s\n", file);
+  PrintCount("vertices of the file", mesh.positions.size());
+  PrintCount("faces of the file", mesh.NumFaces());
   PrintCount("vertices", report.vertices());
   PrintCount("faces", report.faces());
   PrintCount("components", report.components());
   PrintCount("bodies", report.bodies());
+  if (report.bridging_distance() > 0)
+    absl::PrintF("  %-24s %g\n", "bridging distance",
+                 report.bridging_distance());
   PrintCount("boundary loops", report.boundary_loops());
   PrintCount("boundary edges", report.boundary_edges());
   PrintCount("non-manifold edges", report.nonmanifold_edges());
@@ -100,7 +105,7 @@ absl::Status Inspect(const InspectArguments& arguments, ServiceCall& call) {
   if (arguments.service.json) {
     PrintJsonLine(ToJson(arguments.file, response));
   } else if (!arguments.service.quiet) {
-    PrintForPerson(arguments.file, response);
+    PrintForPerson(arguments.file, input.mesh, response);
   }
   return absl::OkStatus();
 }

@@ -23,6 +23,7 @@ std::optional<json> EventJson(const v1::SegmentEvent& event) {
       return json{
           {"event", "accepted"},
           {"job_id", event.accepted().job_id()},
+          {"result", OutcomeName(event.accepted().result())},
           {"mesh_digest", HexOf(event.accepted().mesh_digest().sha256())}};
     case v1::SegmentEvent::kProgress:
       return json{{"event", "progress"},
