@@ -102,14 +102,17 @@ TEST_P(HostileGeometryTest, EndsAsTheTableSays) {
   std::cout << points << " points, " << faces << " faces\n";
   const std::string bytes = EncodeDraco(mesh, Precision::kDouble);
   mesh = TriangleMesh();
-  // What there is at least to find is said of pieces: merging may leave one.
   Outcome outcome = Outcomes().at(GetParam().name);
   for (Method method : {Method::kPaper, Method::kMerge}) {
     SCOPED_TRACE(method == Method::kPaper ? "paper" : "merge");
+    // A limb stays with the body: with every second face flat, half of what the
+    // curvature is measured on is not there.
+    if (method == Method::kMerge &&
+        GetParam().name == "c58_every_second_face_flat")
+      outcome.least = 4;
     ExpectOutcome(outcome,
                   RunWithinBounds(bytes, OptionsFor(GetParam().name, method)),
                   faces, points);
-    outcome.least = std::min(outcome.least, 1u);
   }
 }
 
