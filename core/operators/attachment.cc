@@ -1,7 +1,10 @@
 #include "core/operators/attachment.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/base/cancellable.h"
 #include "core/base/status_macros.h"
@@ -74,27 +77,85 @@ AreaPoints PointsOf(const TriangleMesh& mesh, const Components& components,
               [&](uint32_t i) { return points.component[i] != kNoIndex; });
 }
 
-// Which components have kWornShare of their area near larger ones.
+// Whether every edge has an even number of faces.
+bool IsClosed(const TriangleMesh& mesh, const std::vector<uint32_t>& faces) {
+  std::vector<std::pair<uint32_t, uint32_t>> edges;
+  for (uint32_t f : faces)
+    for (int i = 0; i < 3; ++i)
+      edges.push_back(
+          std::minmax({mesh.faces[f][i], mesh.faces[f][(i + 1) % 3]}));
+  std::sort(edges.begin(), edges.end());
+  size_t end;
+  for (size_t i = 0; i < edges.size(); i = end) {
+    for (end = i; end < edges.size() && edges[end] == edges[i];) ++end;
+    if ((end - i) % 2 != 0) return false;
+  }
+  return true;
+}
+
+// Volume by area. A slab has half of its thickness, a rod of its radius.
+double HalfThickness(const std::vector<Triangle>& all, const Positions& places,
+                     const std::vector<uint32_t>& faces) {
+  const Eigen::RowVector3d origin = places.row(all[faces[0]][0]);
+  double volume = 0, area = 0;
+  for (uint32_t f : faces) {
+    const Eigen::RowVector3d a = places.row(all[f][0]) - origin;
+    const Eigen::RowVector3d b = places.row(all[f][1]) - origin;
+    const Eigen::RowVector3d c = places.row(all[f][2]) - origin;
+    volume += a.dot(b.cross(c)) / 6;
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  return area > 0 ? std::abs(volume) / area : 0;
+}
+
+// How near to another each component has to be to be worn by it. One that is
+// closed has a far side, which is no farther than that off only if the other
+// passes through its inside, or it through that of the other; else it is thin,
+// and a limb may lie against the body.
+std::vector<double> Limits(const TriangleMesh& mesh,
+                           const Components& components,
+                           const Positions& places, double near) {
+  std::vector<double> limits;
+  for (const std::vector<uint32_t>& faces : components)
+    limits.push_back(
+        IsClosed(mesh, faces)
+            ? std::min(near, HalfThickness(mesh.faces, places, faces))
+            : near);
+  return limits;
+}
+
+// Which components have enough of their area within their limits of larger
+// ones, or of others and most of it of one that is larger.
 absl::StatusOr<std::vector<bool>> NearLarger(const AreaPoints& points,
-                                             size_t components,
-                                             double near_square,
+                                             const std::vector<double>& limits,
                                              const CancelToken& cancel) {
   BodyTree tree(points.places, cancel);
   tree.SetBodies(points.component);
-  std::vector<double> area(components, 0), near(components, 0);
+  std::vector<double> area(limits.size(), 0);
+  std::vector<std::map<uint32_t, double>> near(limits.size());
   MARROW_RETURN_IF_ERROR(
       ForEachIndex(points.area.size(), cancel, [&](uint32_t i) {
         const uint32_t own = points.component[i];
         area[own] += points.area[i];
-        Candidate nearest{near_square};
+        Candidate nearest{limits[own] * limits[own]};
         if (own > 0) tree.Improve(i, nearest);
         const auto [a, b] = nearest.ends;
-        if (nearest.IsBridge() && points.component[a == i ? b : a] < own)
-          near[own] += points.area[i];
+        if (!nearest.IsBridge()) return;
+        near[own][points.component[a == i ? b : a]] += points.area[i];
       }));
-  std::vector<bool> is_near(components);
-  for (size_t c = 0; c < components; ++c)
-    is_near[c] = area[c] > 0 && near[c] >= kWornShare * area[c];
+  std::vector<bool> is_near(limits.size(), false);
+  for (uint32_t c = 0; c < limits.size(); ++c) {
+    double sum = 0, larger = 0, most = 0;
+    for (const auto& [other, share] : near[c]) {
+      sum += share;
+      if (other > c) continue;
+      larger += share;
+      most = std::max(most, share);
+    }
+    is_near[c] =
+        area[c] > 0 && sum >= kWornShare * area[c] &&
+        (larger >= kWornShare * area[c] || most >= kWearerShare * area[c]);
+  }
   return is_near;
 }
 
@@ -146,11 +207,11 @@ absl::StatusOr<std::vector<bool>> FindWorn(const TriangleMesh& mesh,
   if (components.size() < 2) return is_worn;
   const UnitPoints box = ToUnitBox(mesh);
   near /= box.unit;
+  const std::vector<double> limits = Limits(mesh, components, box.points, near);
   AreaPoints points = PointsOf(mesh, components, box.points, near);
   for (int layer = 0; layer < kMostLayers; ++layer) {
-    MARROW_ASSIGN_OR_RETURN(
-        const std::vector<bool> more,
-        NearLarger(points, components.size(), near * near, cancel));
+    MARROW_ASSIGN_OR_RETURN(const std::vector<bool> more,
+                            NearLarger(points, limits, cancel));
     if (std::ranges::find(more, true) == more.end()) break;
     for (size_t c = 0; c < more.size(); ++c)
       if (more[c]) is_worn[c] = true;
@@ -160,30 +221,28 @@ absl::StatusOr<std::vector<bool>> FindWorn(const TriangleMesh& mesh,
   return is_worn;
 }
 
-absl::Status Attach(const TriangleMesh& mesh,
-                    const std::vector<const std::vector<uint32_t>*>& bodies,
+absl::Status Attach(const TriangleMesh& mesh, std::vector<uint32_t> bodies,
                     const std::vector<Attachment>& attached, double near,
                     const CancelToken& cancel, std::vector<uint32_t>& anchors) {
   if (attached.empty()) return absl::OkStatus();
-  std::vector<uint32_t> first_face(mesh.NumVertices(), kNoIndex);
-  std::vector<bool> is_left(mesh.NumFaces(), true);
-  for (const std::vector<uint32_t>* faces : bodies) {
-    for (size_t i = faces->size(); i-- > 0;) {
-      is_left[(*faces)[i]] = false;
-      for (uint32_t v : mesh.faces[(*faces)[i]]) first_face[v] = (*faces)[i];
-    }
-  }
-  const NearestFace nearest(mesh, first_face, is_left, near);
+  const NearestFace of_bodies(mesh, bodies, NearestFace::By::kCorners, near);
   for (const auto& [faces, is_worn] : attached) {
-    if (is_worn) {
-      MARROW_RETURN_IF_ERROR(ForEachIndex(faces.size(), cancel, [&](size_t i) {
-        anchors[faces[i]] = nearest.To(nearest.CentreOf(faces[i])).face;
-      }));
-      continue;
-    }
+    if (is_worn) continue;
     MARROW_ASSIGN_OR_RETURN(const uint32_t touched,
-                            FaceTouched(mesh, nearest, faces, cancel));
+                            FaceTouched(mesh, of_bodies, faces, cancel));
     for (uint32_t f : faces) anchors[f] = touched;
+    bodies.insert(bodies.end(), faces.begin(), faces.end());
+  }
+  if (std::ranges::none_of(attached, &Attachment::is_worn))
+    return absl::OkStatus();
+  // What wears it may be attached itself.
+  const NearestFace beneath(mesh, bodies, NearestFace::By::kCentres, near);
+  for (const auto& [faces, is_worn] : attached) {
+    if (!is_worn) continue;
+    MARROW_RETURN_IF_ERROR(ForEachIndex(faces.size(), cancel, [&](size_t i) {
+      const uint32_t f = faces[i];
+      anchors[f] = anchors[beneath.To(beneath.CentreOf(f)).face];
+    }));
   }
   return absl::OkStatus();
 }

@@ -16,7 +16,6 @@
 #include "core/operators/attachment.h"
 #include "core/operators/laplacian.h"
 #include "core/operators/scenery.h"
-#include "core/operators/seams.h"
 
 namespace marrow {
 namespace {
@@ -172,7 +171,16 @@ double NearDistance(const TriangleMesh& mesh, const std::vector<Part>& parts,
                   are_shreds ? kShredGap * sum : kBridgedGap * widest);
 }
 
-// Rule 2a: takes out of the parts of weight those that are worn.
+// How many groups of parts bridges within the distance leave. `main` is made of
+// the parts.
+size_t CountGroups(const std::vector<Part>& parts, const Submesh& main,
+                   double distance, const CancelToken& cancel) {
+  return parts.size() -
+         SpanningBridges(main.canonical.mesh, distance, cancel).size();
+}
+
+// Takes out of the parts of weight those that are worn, unless they hold others
+// together.
 absl::StatusOr<std::vector<Part>> TakeWorn(const TriangleMesh& mesh,
                                            const CancelToken& cancel,
                                            std::vector<Part>& parts) {
@@ -189,16 +197,29 @@ absl::StatusOr<std::vector<Part>> TakeWorn(const TriangleMesh& mesh,
       own.push_back(static_cast<uint32_t>(
           std::lower_bound(all.begin(), all.end(), f) - all.begin()));
   }
+  const double distance = NearDistance(mesh, parts, main, false);
   MARROW_ASSIGN_OR_RETURN(
       const std::vector<bool> is_worn,
-      FindWorn(main.canonical.mesh, faces,
-               NearDistance(mesh, parts, main, false), cancel));
+      FindWorn(main.canonical.mesh, faces, distance, cancel));
+  if (std::ranges::find(is_worn, true) == is_worn.end()) return worn;
+  const size_t groups = CountGroups(parts, main, distance, cancel);
   for (size_t p = 0; p < parts.size(); ++p) {
     parts[p].is_worn = is_worn[p];
     (is_worn[p] ? worn : left).push_back(std::move(parts[p]));
   }
+  const Submesh rest = ExtractFaces(mesh, AllFacesOf(left), cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  if (CountGroups(left, rest, distance, cancel) <= groups) {
+    parts = std::move(left);
+    return worn;
+  }
+  for (Part& part : worn) {
+    part.is_worn = false;
+    left.push_back(std::move(part));
+  }
   parts = std::move(left);
-  return worn;
+  LargestFirst(parts);
+  return std::vector<Part>();
 }
 
 // Rule 2: joins the parts that bridges within the distance connect.
@@ -241,72 +262,6 @@ size_t CountBodies(const std::vector<Part>& parts) {
          parts[count].share >= kBodyShare * parts[0].share)
     ++count;
   return count;
-}
-
-// Vertices that are sewn together become one, where the least of them is.
-// The report is of no use once cancelled.
-void Sew(const std::vector<uint32_t>& sewn, const CancelToken& cancel,
-         Submesh& own, Body& body) {
-  TriangleMesh& mesh = own.canonical.mesh;
-  std::vector<uint32_t> number(sewn.size());
-  uint32_t count = 0;
-  for (uint32_t v = 0; v < sewn.size(); ++v) {
-    if (sewn[v] != v) {
-      number[v] = number[sewn[v]];
-      body.seams.push_back({own.vertices[number[v]], own.vertices[v]});
-      continue;
-    }
-    number[v] = count;
-    mesh.positions.row(count) = mesh.positions.row(v);
-    own.vertices[count++] = own.vertices[v];
-  }
-  if (body.seams.empty()) return;
-  std::sort(body.seams.begin(), body.seams.end());
-  mesh.positions.conservativeResize(count, 3);
-  own.vertices.resize(count);
-  for (Triangle& face : mesh.faces)
-    for (uint32_t& v : face) v = number[v];
-  own.canonical.report = ReportOn(mesh, cancel);
-  own.canonical.geometry_digest = GeometryDigestOf(mesh);
-}
-
-// Vertices that are sewn together to the mean of their places.
-void MoveToMeans(const std::vector<uint32_t>& sewn, Positions& positions) {
-  Positions sums = Positions::Zero(positions.rows(), 3);
-  std::vector<double> count(sewn.size(), 0);
-  for (uint32_t v = 0; v < sewn.size(); ++v) ++count[sewn[v]];
-  for (uint32_t v = 0; v < sewn.size(); ++v)
-    sums.row(sewn[v]) += positions.row(v) / count[sewn[v]];
-  for (uint32_t v = 0; v < sewn.size(); ++v)
-    if (count[v] > 1) positions.row(v) = sums.row(v);
-}
-
-absl::StatusOr<Body> MakeBody(const TriangleMesh& mesh, Part part,
-                              bool are_shreds, const CancelToken& cancel) {
-  Submesh own = ExtractFaces(mesh, part.faces, cancel);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  Body body;
-  if (part.components > 1) {
-    TriangleMesh& shells = own.canonical.mesh;
-    std::vector<uint32_t> sewn;
-    if (are_shreds) {
-      MARROW_ASSIGN_OR_RETURN(sewn, SewShreds(shells, cancel));
-      MoveToMeans(sewn, shells.positions);
-    } else {
-      sewn = SewRims(shells, BridgingDistance(shells), cancel);
-    }
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-    Sew(sewn, cancel, own, body);
-    MARROW_RETURN_IF_ERROR(cancel.Check());
-  }
-  body.bridges = FindBridges(own.canonical.mesh, cancel);
-  MARROW_RETURN_IF_ERROR(cancel.Check());
-  body.canonical =
-      std::make_shared<const CanonicalMesh>(std::move(own.canonical));
-  body.faces = std::move(part.faces);
-  body.vertices = std::move(own.vertices);
-  body.share = part.share;
-  return body;
 }
 
 std::vector<uint32_t> Iota(uint32_t n) {
@@ -386,12 +341,15 @@ void Note(const std::vector<Part>& bodies, const std::vector<Part>& attached,
 absl::Status AttachRest(const TriangleMesh& mesh, std::vector<Part>& attached,
                         size_t count, double near, const CancelToken& cancel,
                         Bodies& bodies) {
-  std::vector<const std::vector<uint32_t>*> faces;
-  for (size_t b = 0; b < count; ++b) faces.push_back(&bodies.bodies[b].faces);
+  std::vector<uint32_t> faces;
+  for (size_t b = 0; b < count; ++b)
+    faces.insert(faces.end(), bodies.bodies[b].faces.begin(),
+                 bodies.bodies[b].faces.end());
   std::vector<Attachment> attachments;
   for (Part& part : attached)
     attachments.push_back({std::move(part.faces), part.is_worn});
-  return Attach(mesh, faces, attachments, near, cancel, bodies.anchors);
+  return Attach(mesh, std::move(faces), attachments, near, cancel,
+                bodies.anchors);
 }
 
 // Back from the parted mesh.
@@ -452,7 +410,9 @@ absl::StatusOr<Bodies> SortOut(CanonicalMesh& mesh, const CancelToken& cancel) {
   } else {
     for (Part& part : parts) {
       MARROW_ASSIGN_OR_RETURN(
-          Body body, MakeBody(shells, std::move(part), are_shreds, cancel));
+          Body body, MakeBody(shells, std::move(part.faces),
+                              part.components > 1, are_shreds, cancel));
+      body.share = part.share;
       result.bodies.push_back(std::move(body));
     }
     MARROW_RETURN_IF_ERROR(

@@ -12,7 +12,8 @@
 //     a body under its hair), of at least kLightWeight; the largest always is.
 //     A component of weight that lies all over on larger ones, within the
 //     distance of rule 2, is worn (core/operators/attachment.h): it would be
-//     cut where it is, not where they are.
+//     cut where it is, not where that is. None is where they hold together what
+//     rule 2 would part without them.
 //  2. Components of weight no farther apart than BridgingDistance() of all of
 //     weight, nor than kBridgedGap of the widest (a row of creatures is wide,
 //     and no creature for that), are one body, through any number of others. A

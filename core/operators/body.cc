@@ -4,7 +4,81 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/status_macros.h"
+#include "core/mesh/mesh_report.h"
+#include "core/mesh/submesh.h"
+#include "core/operators/seams.h"
+
 namespace marrow {
+namespace {
+
+// Vertices that are sewn together become one, where the least of them is.
+// The report is of no use once cancelled.
+void Sew(const std::vector<uint32_t>& sewn, const CancelToken& cancel,
+         Submesh& own, Body& body) {
+  TriangleMesh& mesh = own.canonical.mesh;
+  std::vector<uint32_t> number(sewn.size());
+  uint32_t count = 0;
+  for (uint32_t v = 0; v < sewn.size(); ++v) {
+    if (sewn[v] != v) {
+      number[v] = number[sewn[v]];
+      body.seams.push_back({own.vertices[number[v]], own.vertices[v]});
+      continue;
+    }
+    number[v] = count;
+    mesh.positions.row(count) = mesh.positions.row(v);
+    own.vertices[count++] = own.vertices[v];
+  }
+  if (body.seams.empty()) return;
+  std::sort(body.seams.begin(), body.seams.end());
+  mesh.positions.conservativeResize(count, 3);
+  own.vertices.resize(count);
+  for (Triangle& face : mesh.faces)
+    for (uint32_t& v : face) v = number[v];
+  own.canonical.report = ReportOn(mesh, cancel);
+  own.canonical.geometry_digest = GeometryDigestOf(mesh);
+}
+
+// Vertices that are sewn together to the mean of their places.
+void MoveToMeans(const std::vector<uint32_t>& sewn, Positions& positions) {
+  Positions sums = Positions::Zero(positions.rows(), 3);
+  std::vector<double> count(sewn.size(), 0);
+  for (uint32_t v = 0; v < sewn.size(); ++v) ++count[sewn[v]];
+  for (uint32_t v = 0; v < sewn.size(); ++v)
+    sums.row(sewn[v]) += positions.row(v) / count[sewn[v]];
+  for (uint32_t v = 0; v < sewn.size(); ++v)
+    if (count[v] > 1) positions.row(v) = sums.row(v);
+}
+
+}  // namespace
+
+absl::StatusOr<Body> MakeBody(const TriangleMesh& mesh,
+                              std::vector<uint32_t> faces, bool has_shells,
+                              bool are_shreds, const CancelToken& cancel) {
+  Submesh own = ExtractFaces(mesh, faces, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  Body body;
+  if (has_shells) {
+    TriangleMesh& shells = own.canonical.mesh;
+    std::vector<uint32_t> sewn;
+    if (are_shreds) {
+      MARROW_ASSIGN_OR_RETURN(sewn, SewShreds(shells, cancel));
+      MoveToMeans(sewn, shells.positions);
+    } else {
+      sewn = SewRims(shells, BridgingDistance(shells), cancel);
+    }
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+    Sew(sewn, cancel, own, body);
+    MARROW_RETURN_IF_ERROR(cancel.Check());
+  }
+  body.bridges = FindBridges(own.canonical.mesh, cancel);
+  MARROW_RETURN_IF_ERROR(cancel.Check());
+  body.canonical =
+      std::make_shared<const CanonicalMesh>(std::move(own.canonical));
+  body.faces = std::move(faces);
+  body.vertices = std::move(own.vertices);
+  return body;
+}
 
 std::vector<bool> PatchesOf(const Body& body) {
   if (body.patched == nullptr) return {};

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "core/base/cancel_token.h"
 #include "core/mesh/canonical_mesh.h"
 #include "core/mesh/coarse_mesh.h"
 #include "core/operators/bridges.h"
@@ -41,6 +43,12 @@ struct Body {
     return coarse == nullptr ? Patched() : coarse->canonical;
   }
 };
+
+// Of some faces of a mesh, ascending, with its share left at 1; the rims of its
+// shells are sewn, where it has several. Errors: CANCELLED.
+absl::StatusOr<Body> MakeBody(const TriangleMesh& mesh,
+                              std::vector<uint32_t> faces, bool has_shells,
+                              bool are_shreds, const CancelToken& cancel);
 
 // By face that is computed on, whether it is a patch and of no face of the
 // body; empty where none is.

@@ -13,20 +13,20 @@
 
 namespace marrow {
 
-// Finds the face of the bodies nearest to a place, by their vertices and by
-// points inside coarse faces.
+// Finds the nearest of some faces of a mesh by points that stand for them:
+// their corners or their centres, and points inside coarse ones.
 class NearestFace {
  public:
-  // `face_of_vertex`: a face of the bodies, or kNoIndex. `is_left`, by face:
-  // whether it is of none of them. The mesh must outlive this.
-  NearestFace(const TriangleMesh& mesh,
-              const std::vector<uint32_t>& face_of_vertex,
-              const std::vector<bool>& is_left, double near)
+  enum class By { kCorners, kCentres };
+
+  // The mesh must outlive this. `faces`: not empty. Points inside are no
+  // farther apart than what `near` lets pass (surface_points.h).
+  NearestFace(const TriangleMesh& mesh, const std::vector<uint32_t>& faces,
+              By by, double near)
       : mesh_(mesh),
         unit_(1 / mesh.positions.cwiseAbs().maxCoeff()),
         places_(mesh.positions * unit_),
-        cloud_(places_, face_of_vertex),
-        tree_(3, Add(mesh, is_left, near)) {}
+        tree_(3, Fill(faces, by, near)) {}
 
   // Places are in units of the largest coordinate.
   Eigen::RowVector3d PlaceOf(uint32_t vertex) const {
@@ -52,13 +52,9 @@ class NearestFace {
  private:
   // nanoflann's view of the points.
   struct Cloud {
-    Cloud(const Positions& vertices,
-          const std::vector<uint32_t>& face_of_vertex) {
-      for (uint32_t v = 0; v < face_of_vertex.size(); ++v) {
-        if (face_of_vertex[v] == kNoIndex) continue;
-        places.push_back(vertices.row(v));
-        faces.push_back(face_of_vertex[v]);
-      }
+    void Add(const Eigen::RowVector3d& place, uint32_t face) {
+      places.push_back(place);
+      faces.push_back(face);
     }
     size_t kdtree_get_point_count() const { return places.size(); }
     double kdtree_get_pt(size_t i, size_t d) const { return places[i][d]; }
@@ -71,15 +67,28 @@ class NearestFace {
     std::vector<uint32_t> faces;
   };
 
-  const Cloud& Add(const TriangleMesh& mesh, const std::vector<bool>& is_left,
-                   double near) {
-    const FacePoints inside = PointsInFaces(mesh, places_, near * unit_);
-    for (uint32_t i = 0; i < inside.face.size(); ++i) {
-      if (is_left[inside.face[i]]) continue;
-      cloud_.places.push_back(inside.places.row(i));
-      cloud_.faces.push_back(inside.face[i]);
+  const Cloud& Fill(const std::vector<uint32_t>& faces, By by, double near) {
+    if (by == By::kCorners) {
+      AddCorners(faces);
+    } else {
+      for (uint32_t f : faces) cloud_.Add(CentreOf(f), f);
     }
+    TriangleMesh some;
+    some.positions = mesh_.positions;
+    for (uint32_t f : faces) some.faces.push_back(mesh_.faces[f]);
+    const FacePoints inside = PointsInFaces(some, places_, near * unit_);
+    for (uint32_t i = 0; i < inside.face.size(); ++i)
+      cloud_.Add(inside.places.row(i), faces[inside.face[i]]);
     return cloud_;
+  }
+
+  // Each once, for the first face that has it.
+  void AddCorners(const std::vector<uint32_t>& faces) {
+    std::vector<uint32_t> first(mesh_.NumVertices(), kNoIndex);
+    for (size_t i = faces.size(); i-- > 0;)
+      for (uint32_t v : mesh_.faces[faces[i]]) first[v] = faces[i];
+    for (uint32_t v = 0; v < first.size(); ++v)
+      if (first[v] != kNoIndex) cloud_.Add(PlaceOf(v), first[v]);
   }
 
   const TriangleMesh& mesh_;

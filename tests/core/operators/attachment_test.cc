@@ -60,6 +60,25 @@ TEST(AttachmentTest, NeighboursAreNotWorn) {
   EXPECT_EQ(WornOf({box, BallAt(0, 1)}, 0.03), std::vector<bool>(2, false));
 }
 
+// All of a neck is near one of two balls, and holds them together.
+TEST(AttachmentTest, ANeckIsNotWorn) {
+  TriangleMesh neck = BallAt(0, 0.3);
+  neck.positions.col(0) *= 0.05;
+  neck.positions.col(0).array() += 1.02;
+  EXPECT_EQ(WornOf({BallAt(0, 1), BallAt(2.04, 0.99), neck}, 0.1),
+            std::vector<bool>(3, false));
+}
+
+// Closed and thin: its far side is near as well.
+TEST(AttachmentTest, ALimbThatLiesAgainstTheBodyIsNotWorn) {
+  TriangleMesh wing = BallAt(0, 1.02);
+  for (Eigen::Index v = 0; v < wing.positions.rows(); ++v)
+    if (wing.positions(v, 2) < 0.6) wing.positions.row(v) *= 1.015 / 1.02;
+  for (Eigen::Index v = 0; v < wing.positions.rows(); ++v)
+    if (wing.positions(v, 2) < 0) wing.positions(v, 2) *= -1;
+  EXPECT_EQ(WornOf({BallAt(0, 1), wing}, 0.03), std::vector<bool>(2, false));
+}
+
 std::vector<uint32_t> Faces(uint32_t begin, uint32_t end) {
   std::vector<uint32_t> faces(end - begin);
   std::iota(faces.begin(), faces.end(), begin);
@@ -74,10 +93,8 @@ TEST(AttachmentTest, AStrapFollowsWhatItIsAround) {
   const TriangleMesh mesh = Together({BallAt(0, 1), BallAt(2.25, 1), ring});
   const uint32_t ball = Icosphere(3).NumFaces();
   std::vector<uint32_t> anchors = Faces(0, 3 * ball);
-  const std::vector<uint32_t> left = Faces(0, ball),
-                              right = Faces(ball, 2 * ball);
-  ASSERT_TRUE(Attach(mesh, {&left, &right}, {{Faces(2 * ball, 3 * ball)}}, 0.03,
-                     CancelToken(), anchors)
+  ASSERT_TRUE(Attach(mesh, Faces(0, 2 * ball), {{Faces(2 * ball, 3 * ball)}},
+                     0.03, CancelToken(), anchors)
                   .ok());
   for (uint32_t f = 0; f < 2 * ball; ++f) EXPECT_EQ(anchors[f], f);
   for (uint32_t f = 2 * ball; f < 3 * ball; ++f) {
@@ -91,7 +108,7 @@ TEST(AttachmentTest, EachFaceOfWhatIsWornFollowsTheFaceBeneathIt) {
   const uint32_t ball = Icosphere(3).NumFaces();
   std::vector<uint32_t> anchors = Faces(0, 2 * ball);
   const std::vector<uint32_t> body = Faces(0, ball);
-  ASSERT_TRUE(Attach(mesh, {&body}, {{Faces(ball, 2 * ball), true}}, 0.03,
+  ASSERT_TRUE(Attach(mesh, body, {{Faces(ball, 2 * ball), true}}, 0.03,
                      CancelToken(), anchors)
                   .ok());
   uint32_t beneath = 0;
@@ -101,6 +118,23 @@ TEST(AttachmentTest, EachFaceOfWhatIsWornFollowsTheFaceBeneathIt) {
         a, [&](uint32_t v) { return std::ranges::find(b, v) != b.end(); });
   }
   EXPECT_EQ(beneath, ball);
+}
+
+// The hidden body has the label of its suit, which is attached itself.
+TEST(AttachmentTest, WhatWearsMayBeAttached) {
+  const TriangleMesh mesh =
+      Together({BallAt(0, 1), BallAt(1.3, 0.2), BallAt(1.3, 0.195)});
+  const uint32_t ball = Icosphere(3).NumFaces();
+  std::vector<uint32_t> anchors = Faces(0, 3 * ball);
+  ASSERT_TRUE(
+      Attach(mesh, Faces(0, ball),
+             {{Faces(2 * ball, 3 * ball), true}, {Faces(ball, 2 * ball)}}, 0.03,
+             CancelToken(), anchors)
+          .ok());
+  for (uint32_t f = ball; f < 3 * ball; ++f) {
+    EXPECT_LT(anchors[f], ball);
+    EXPECT_EQ(anchors[f], anchors[ball]);
+  }
 }
 
 TEST(AttachmentTest, StopsWhenCancelled) {
@@ -113,7 +147,7 @@ TEST(AttachmentTest, StopsWhenCancelled) {
       FindWorn(mesh, {body, Faces(ball, 2 * ball)}, 0.03, cancel).status()));
   std::vector<uint32_t> anchors = Faces(0, 2 * ball);
   EXPECT_TRUE(absl::IsCancelled(Attach(
-      mesh, {&body}, {{Faces(ball, 2 * ball), true}}, 0.03, cancel, anchors)));
+      mesh, body, {{Faces(ball, 2 * ball), true}}, 0.03, cancel, anchors)));
 }
 
 }  // namespace

@@ -166,6 +166,25 @@ TEST(BodiesTest, LegsOfACrowdAreBridgedAsOfOne) {
   EXPECT_EQ(FindBodies(mesh).bodies.size(), 40u);
 }
 
+// A cap on a ball is worn by it, but where it alone reaches another ball.
+TEST(BodiesTest, WhatHoldsOthersTogetherIsNotWorn) {
+  const TriangleMesh ball = Icosphere(3);
+  TriangleMesh cap = Scaled(ball, 1.1);
+  std::erase_if(cap.faces, [&](const Triangle& face) {
+    return cap.positions(face[0], 0) < -0.5;
+  });
+  cap = CanonicalOf(cap).mesh;
+  CanonicalMesh alone = CanonicalOf(Together({ball, cap}));
+  EXPECT_EQ(FindBodies(alone).bodies.size(), 1u);
+  EXPECT_EQ(alone.report.worn_components, 1u);
+  EXPECT_EQ(alone.report.attached_faces, cap.NumFaces());
+  CanonicalMesh held =
+      CanonicalOf(Together({ball, cap, MovedTo(Scaled(ball, 0.9), 2.1)}));
+  EXPECT_EQ(FindBodies(held).bodies.size(), 1u);
+  EXPECT_EQ(held.report.worn_components, 0u);
+  EXPECT_EQ(held.report.bridged_components, 3u);
+}
+
 TEST(BodiesTest, AnyScaleGivesTheSame) {
   const TriangleMesh mesh = Together({Icosphere(3), MovedTo(Icosphere(3), 2.01),
                                       MovedTo(Scaled(Icosphere(0), 0.01), 4)});
