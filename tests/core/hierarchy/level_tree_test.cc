@@ -28,13 +28,26 @@ struct Strip {
   }
   SegmentTree Build(const MergeOrder& order,
                     const std::vector<double>& thresholds) const {
-    return BuildLevelTree(solved.context(), {}, solved.canonical.report.area,
-                          pieces, order, thresholds, CancelToken())
-        .value();
+    SegmentTree tree =
+        BuildLevelTree(solved.context(), {}, solved.canonical.report.area,
+                       pieces, order, thresholds, CancelToken())
+            .value();
+    // As if the pieces had been found by the very same splits.
+    SegmentTree splits = tree;
+    for (SegmentNode& node : splits.nodes)
+      node.iterations = node.children.empty() ? 0 : IterationsOf(node);
+    NoteIterations(splits, solved.areas, tree);
+    return tree;
+  }
+  static uint32_t IterationsOf(const SegmentNode& node) {
+    return static_cast<uint32_t>(node.faces.size());
   }
   void ExpectSound(const SegmentTree& tree) const {
     ExpectSoundTree(solved.canonical.mesh, solved.adjacency, tree,
                     solved.canonical.report.area, true, true);
+    for (const SegmentNode& node : tree.nodes)
+      EXPECT_EQ(node.iterations,
+                node.children.size() > 1 ? IterationsOf(node) : 0);
   }
 };
 
