@@ -237,12 +237,13 @@ absl::Status Attach(const TriangleMesh& mesh, std::vector<uint32_t> bodies,
     return absl::OkStatus();
   // What wears it may be attached itself.
   const NearestFace beneath(mesh, bodies, NearestFace::By::kCentres, near);
-  for (const auto& [faces, is_worn] : attached) {
-    if (!is_worn) continue;
-    MARROW_RETURN_IF_ERROR(ForEachIndex(faces.size(), cancel, [&](size_t i) {
-      const uint32_t f = faces[i];
+  for (const Attachment& worn : attached) {
+    if (!worn.is_worn) continue;
+    const auto follow = [&](size_t i) {
+      const uint32_t f = worn.faces[i];
       anchors[f] = anchors[beneath.To(beneath.CentreOf(f)).face];
-    }));
+    };
+    MARROW_RETURN_IF_ERROR(ForEachIndex(worn.faces.size(), cancel, follow));
   }
   return absl::OkStatus();
 }

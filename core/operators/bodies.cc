@@ -346,6 +346,7 @@ absl::Status AttachRest(const TriangleMesh& mesh, std::vector<Part>& attached,
     faces.insert(faces.end(), bodies.bodies[b].faces.begin(),
                  bodies.bodies[b].faces.end());
   std::vector<Attachment> attachments;
+  attachments.reserve(attached.size());
   for (Part& part : attached)
     attachments.push_back({std::move(part.faces), part.is_worn});
   return Attach(mesh, std::move(faces), attachments, near, cancel,
