@@ -17,10 +17,11 @@ namespace {
 // cut up at its joints the trunk hardly is.
 constexpr double kLargeShell = 0.3;
 
-// A mode with as much mass on a share of the area less than this as if it were
-// even there, and zero elsewhere, is a spike's. Of the limbs of real creatures
-// a tentacle of an octopus comes nearest, with .08, and its next mode is 1.1
-// times as fast; one vertex pulled out by a diagonal has .03 and 4.3.
+// A mode is a spike's if its participation ratio is less than this: that of one
+// that is even on such a share of the area, and zero elsewhere. Of the limbs of
+// real creatures a tentacle of an octopus comes nearest, with .08, and its next
+// mode is 1.1 times as fast; one vertex pulled out by a diagonal has .03
+// and 4.3.
 constexpr double kSpread = 0.1;
 constexpr double kMuchFaster = 2;
 

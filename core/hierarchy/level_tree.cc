@@ -8,6 +8,7 @@
 
 #include "core/base/status_macros.h"
 #include "core/hierarchy/segment_node.h"
+#include "core/mesh/face_areas.h"
 
 namespace marrow {
 namespace {
@@ -58,13 +59,6 @@ std::vector<SegmentNode> PartsOf(const Growth& growth, const SegmentNode& node,
     parts.back().salience = salience[group];
   }
   return parts;
-}
-
-double AreaOf(const std::vector<uint32_t>& faces,
-              const std::vector<double>& face_areas) {
-  double sum = 0;
-  for (uint32_t f : faces) sum += face_areas[f];
-  return sum;
 }
 
 // Of the area of either, how much both have.

@@ -61,7 +61,7 @@ AreaPoints PointsOf(const TriangleMesh& mesh, const Components& components,
   std::vector<uint32_t> component(mesh.NumFaces(), kNoIndex);
   for (uint32_t c = 0; c < components.size(); ++c)
     for (uint32_t f : components[c]) component[f] = c;
-  std::vector<double> share = FaceAreaShares(mesh);
+  const std::vector<double> share = FaceAreaShares(mesh);
   std::vector<uint32_t> points_of_face(mesh.NumFaces(), 3);
   for (uint32_t f : inside.face) ++points_of_face[f];
   const auto add = [&](size_t point, uint32_t f) {
@@ -108,10 +108,10 @@ double HalfThickness(const std::vector<Triangle>& all, const Positions& places,
   return area > 0 ? std::abs(volume) / area : 0;
 }
 
-// How near to another each component has to be to be worn by it. One that is
-// closed has a far side, which is no farther than that off only if the other
-// passes through its inside, or it through that of the other; else it is thin,
-// and a limb may lie against the body.
+// How near to another each component has to be to be worn by it: within half of
+// its own thickness, where it is closed. The far side of a thin limb that lies
+// against the body is farther off than that; all of a suit, or of a body in
+// one, is not.
 std::vector<double> Limits(const TriangleMesh& mesh,
                            const Components& components,
                            const Positions& places, double near) {
@@ -183,8 +183,9 @@ absl::StatusOr<uint32_t> FaceTouched(const TriangleMesh& mesh,
           {std::sqrt(found.distance_square), found.place, found.face});
     }
   }));
-  double reach = std::ranges::min(contacts, {}, &Contact::distance).distance +
-                 kContact * (high - low).norm();
+  const double reach =
+      std::ranges::min(contacts, {}, &Contact::distance).distance +
+      kContact * (high - low).norm();
   std::erase_if(contacts,
                 [&](const Contact& c) { return !(c.distance <= reach); });
   Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();

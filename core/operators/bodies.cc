@@ -1,14 +1,15 @@
 #include "core/operators/bodies.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
-#include "core/base/cancellable.h"
 #include "core/base/disjoint_sets.h"
+#include "core/base/status_macros.h"
 #include "core/mesh/components.h"
+#include "core/mesh/face_areas.h"
 #include "core/mesh/mesh_report.h"
 #include "core/mesh/patches.h"
 #include "core/mesh/submesh.h"
@@ -36,13 +37,6 @@ Groups GroupBy(uint32_t n, DisjointSets& sets) {
     groups[at].push_back(i);
   }
   return groups;
-}
-
-double AreaOf(const std::vector<uint32_t>& faces,
-              const std::vector<double>& areas) {
-  double sum = 0;
-  for (uint32_t f : faces) sum += areas[f];
-  return sum;
 }
 
 // Parts sorted out of the mesh, each a set of faces with its area.
