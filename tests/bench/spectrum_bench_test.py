@@ -15,16 +15,22 @@ BENCH = sys.argv.pop(1)
 DOCUMENT = f"before\n\n{spectrum_bench.BEGIN}\nold\n{spectrum_bench.END}\nafter\n"
 
 
+def document_after(*words):
+    """What a document is after a run, of which nothing else is left behind."""
+    with tempfile.TemporaryDirectory() as folder:
+        document = pathlib.Path(folder) / "performance.md"
+        document.write_text(DOCUMENT, "utf-8")
+        spectrum_bench.main([*words, "--repeats", "1", "--bench", BENCH,
+                             "--output", str(document)])
+        if os.listdir(folder) != [document.name]:
+            raise AssertionError(os.listdir(folder))
+        return document.read_text("utf-8")
+
+
 class SpectrumBenchTest(unittest.TestCase):
 
     def test_all_solvers_agree_and_none_misses_a_pair(self):
-        with tempfile.TemporaryDirectory() as folder:
-            document = pathlib.Path(folder) / "performance.md"
-            document.write_text(DOCUMENT, "utf-8")
-            spectrum_bench.main(
-                ["--sizes", "2500", "-k", "10,50", "--repeats", "1", "--bench",
-                 BENCH, "--output", str(document)])
-            text = document.read_text("utf-8")
+        text = document_after("--sizes", "2500", "-k", "10,50")
         self.assertTrue(text.startswith("before\n"))
         self.assertTrue(text.endswith(f"{spectrum_bench.END}\nafter\n"))
         self.assertNotIn("old", text)
@@ -63,14 +69,8 @@ class SpectrumBenchTest(unittest.TestCase):
         self.assertIsNone(bench.once("marrow", ".", 9001, 10))
 
     def test_tables_are_kept_where_one_is_appended(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "performance.md"
-            path.write_text(DOCUMENT, "utf-8")
-            spectrum_bench.main(
-                ["--sizes", "1000,2500", "-k", "10", "--repeats", "1", "--bench",
-                 BENCH, "--solvers", "marrow", "--append", "--output", str(path)])
-            text = path.read_text("utf-8")
-            self.assertEqual(os.listdir(folder), [path.name])
+        text = document_after("--sizes", "1000,2500", "-k", "10", "--solvers",
+                              "marrow", "--append")
         self.assertIn(f"{spectrum_bench.BEGIN}\n\nold\n\nMeasured on", text)
         self.assertEqual(text.count("| humanoid"), 2)
 
